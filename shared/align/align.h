@@ -19,8 +19,8 @@ struct AlignOptions {
 
 struct AlignResult {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();  ///< takes the moving model to the fixed one
-  double rms_before = 0, rms_after = 0;  ///< of the inlier distances, world units
-  double inlier_share = 0;               ///< of the moving part's samples that match the fixed part
+  double rms_before = 0, rms_after = 0;                  ///< of the inlier distances, world units
+  double inlier_share = 0;                               ///< of the moving part's samples that match the fixed part
   int iterations = 0;
   int candidates = 0;  ///< coarse poses tried
 };

@@ -22,7 +22,6 @@ struct RigidPose {
 /// @param frames  1 = the pose; N = N results from rest (an unchanged copy) to the pose
 /// @throws UserError, Cancelled  as compose()
 std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fixed, const std::vector<char>& moving,
-                                  const RigidPose& pose, int frames, const ComposeOptions& options,
-                                  Progress& progress);
+                                  const RigidPose& pose, int frames, const ComposeOptions& options, Progress& progress);
 
 }  // namespace parts

@@ -12,7 +12,7 @@ namespace parts {
 
 using Vec3 = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
-using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise from outside
+using Triangle = std::array<int, 3>;        ///< vertex indices, counter-clockwise from outside
 using Color = std::array<std::uint8_t, 4>;  ///< RGBA
 
 /// Texture coordinates of a face's three corners. texture indexes

@@ -1,0 +1,53 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# Prints the folder that holds MeshLab's headers (src/common, vcglib), which
+# Debian's meshlab package leaves out. They are downloaded once from Debian's
+# source package of the same version, through the machine's own apt sources,
+# without touching its apt lists: no root needed.
+set -euo pipefail
+
+fail() { echo "$*" >&2; exit 1; }
+say() { echo "$*" >&2; }
+
+version=$(dpkg-query -W -f '${source:Version}' meshlab 2>/dev/null) ||
+  fail "MeshLab is not installed; run './run setup' first."
+cache=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/meshlab-headers
+headers=$cache/$version
+if [[ -f $headers/src/common/interfaces.h && -d $headers/vcglib/vcg ]]; then
+  echo "$headers"
+  exit 0
+fi
+
+mkdir -p "$cache" 2>/dev/null || fail "The folder $cache cannot be written; set XDG_CACHE_HOME to one that can."
+work=$(mktemp -d "$cache/fetch.XXXXXX")  # beside the target, so that the last step is one rename
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work"/{sources.d,lists/partial,archives/partial,download}
+
+# The machine's own sources, asked for source packages instead of binary ones:
+# mirrors, keyrings and options stay as their owner set them.
+eval "$(apt-config shell list Dir::Etc::sourcelist/f parts Dir::Etc::sourceparts/d)"
+for file in "$list" "$parts"*.list "$parts"*.sources; do
+  [[ -f $file ]] || continue
+  sed -E 's/^deb([[:space:]])/deb-src\1/; s/^Types:.*/Types: deb-src/' "$file" >"$work/sources.d/${file##*/}"
+done
+
+private_apt=(apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$work/sources.d"
+  -o "Dir::State::lists=$work/lists" -o "Dir::Cache=$work" -o Acquire::Languages=none -o Acquire::Retries=2)
+[[ $(id -u) -eq 0 ]] && private_apt+=(-o APT::Sandbox::User=root)
+
+say "Fetching MeshLab's headers from Debian's source package meshlab $version (once, about a minute) ..."
+"${private_apt[@]}" update >"$work/log" 2>&1 || true  # a vendor's list may fail, Debian's counts
+(cd "$work/download" && "${private_apt[@]}" source --download-only "meshlab=$version") >>"$work/log" 2>&1 || {
+  grep -E '^(E|W|Err):?' "$work/log" | head -5 >&2
+  fail "MeshLab's source package could not be downloaded; check the network, the free disk space and that apt's sources are Debian's, and try again."
+}
+dpkg-source --no-check -x "$work"/download/meshlab_*.dsc "$work/meshlab" >>"$work/log" 2>&1 ||
+  fail "MeshLab's source package could not be unpacked in $cache; check the free disk space and try again."
+
+mkdir "$work/headers" "$work/headers/src"
+mv "$work/meshlab/src/common" "$work/headers/src/"
+mv "$work/meshlab/vcglib" "$work/headers/"
+rm -rf "$headers"
+mv "$work/headers" "$headers"
+echo "$headers"
