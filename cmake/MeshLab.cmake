@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The host: the installed MeshLab, a stage tree in which it runs with this
+# project's plugins and no system file is touched, and the function that makes
+# such a plugin.
+
+find_package(Qt5 REQUIRED COMPONENTS Core Gui Widgets OpenGL Xml)
+find_package(OpenGL REQUIRED)
+find_library(MESHLAB_COMMON_LIBRARY meshlab-common PATH_SUFFIXES meshlab REQUIRED)
+find_program(MESHLAB_PROGRAM meshlab REQUIRED)
+find_program(MESHLAB_SERVER_PROGRAM meshlabserver REQUIRED)
+mark_as_advanced(MESHLAB_COMMON_LIBRARY MESHLAB_PROGRAM MESHLAB_SERVER_PROGRAM)
+
+get_filename_component(meshlab_lib_dir "${MESHLAB_COMMON_LIBRARY}" DIRECTORY)        # /usr/lib/<triplet>/meshlab
+get_filename_component(meshlab_bin_dir "${MESHLAB_PROGRAM}" DIRECTORY)
+get_filename_component(meshlab_prefix "${meshlab_bin_dir}" DIRECTORY)                # /usr
+set(MESHLAB_PLUGIN_DIR "${meshlab_lib_dir}/plugins" CACHE PATH "Where 'cmake --install' puts the plugins")
+
+# MeshLab's API as Debian built it: single precision.
+add_library(deps::meshlab INTERFACE IMPORTED GLOBAL)
+target_include_directories(deps::meshlab SYSTEM INTERFACE "${MESHLAB_HEADERS}/src" "${MESHLAB_HEADERS}/vcglib")
+target_compile_definitions(deps::meshlab INTERFACE MESHLAB_SCALAR=float)
+target_link_libraries(deps::meshlab INTERFACE
+  "${MESHLAB_COMMON_LIBRARY}" deps::eigen Qt5::Core Qt5::Gui Qt5::Widgets Qt5::OpenGL Qt5::Xml OpenGL::GL)
+
+# --- The stage tree. MeshLab finds its libraries and plugins relative to the
+# real place of its program, so the programs are copied and the rest is linked.
+set(PARTS_STAGE_DIR "${PROJECT_BINARY_DIR}/stage")
+file(RELATIVE_PATH meshlab_lib_subdir "${meshlab_prefix}" "${meshlab_lib_dir}")
+set(stage_lib_dir "${PARTS_STAGE_DIR}/${meshlab_lib_subdir}")
+set(PARTS_STAGE_PLUGIN_DIR "${stage_lib_dir}/plugins")
+
+file(COPY "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" DESTINATION "${PARTS_STAGE_DIR}/bin")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+  "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" "${meshlab_lib_dir}/plugins")
+file(MAKE_DIRECTORY "${PARTS_STAGE_PLUGIN_DIR}" "${PARTS_STAGE_DIR}/share")
+file(CREATE_LINK "${MESHLAB_COMMON_LIBRARY}" "${stage_lib_dir}/libmeshlab-common.so" SYMBOLIC)
+file(CREATE_LINK "${meshlab_prefix}/share/meshlab" "${PARTS_STAGE_DIR}/share/meshlab" SYMBOLIC)
+
+file(GLOB staged "${PARTS_STAGE_PLUGIN_DIR}/*")
+foreach(file IN LISTS staged)  # links to what a MeshLab upgrade may have removed, plugins whose folder is gone
+  get_filename_component(name "${file}" NAME_WE)
+  string(REGEX REPLACE "^lib" "" name "${name}")
+  if(IS_SYMLINK "${file}" OR NOT EXISTS "${PROJECT_SOURCE_DIR}/${name}/CMakeLists.txt")
+    file(REMOVE "${file}")
+  endif()
+endforeach()
+file(GLOB system_plugins "${meshlab_lib_dir}/plugins/*.so")
+foreach(file IN LISTS system_plugins)
+  get_filename_component(name "${file}" NAME)
+  string(REGEX REPLACE "^lib(.*)\\.so$" "\\1" folder "${name}")
+  if(NOT EXISTS "${PROJECT_SOURCE_DIR}/${folder}/CMakeLists.txt")  # an installed plugin of ours: the built one counts
+    file(CREATE_LINK "${file}" "${PARTS_STAGE_PLUGIN_DIR}/${name}" SYMBOLIC)
+  endif()
+endforeach()
+
+# add_meshlab_filter(<name> [<source>...])
+# A MeshLab filter plugin from the given sources, or from every .h and .cpp of
+# the calling folder. It is built into the stage tree and installed beside
+# MeshLab's own plugins. <name> is the folder's name.
+function(add_meshlab_filter name)
+  set(sources ${ARGN})
+  if(NOT sources)
+    file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/*.h")
+  endif()
+  add_library(${name} MODULE ${sources})
+  target_link_libraries(${name} PRIVATE parts_host)
+  set_target_properties(${name} PROPERTIES
+    AUTOMOC ON
+    LIBRARY_OUTPUT_DIRECTORY "${PARTS_STAGE_PLUGIN_DIR}"
+    BUILD_WITH_INSTALL_RPATH ON
+    INSTALL_RPATH "$ORIGIN/..")
+  # MeshLab resolves symbols late: a missing one must fail here, not on the user's click.
+  target_link_options(${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
+  install(TARGETS ${name} LIBRARY DESTINATION "${MESHLAB_PLUGIN_DIR}")
+endfunction()
+
+# 'uninstall' removes what the last 'install' wrote.
+add_custom_target(uninstall
+  COMMAND "${CMAKE_COMMAND}" "-DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt"
+          -P "${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake"
+  COMMENT "Removing the installed plugins" VERBATIM)

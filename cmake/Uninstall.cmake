@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cmake -DMANIFEST=<install_manifest.txt> -P Uninstall.cmake
+if(NOT EXISTS "${MANIFEST}")
+  message(STATUS "Nothing to remove: ${MANIFEST} does not exist, so nothing was installed from this build.")
+  return()
+endif()
+file(STRINGS "${MANIFEST}" files)
+foreach(file IN LISTS files)
+  set(path "$ENV{DESTDIR}${file}")
+  if(EXISTS "${path}" OR IS_SYMLINK "${path}")
+    message(STATUS "Removing ${path}")
+    file(REMOVE "${path}")
+    if(EXISTS "${path}")
+      message(FATAL_ERROR "${path} could not be removed; it needs the rights it was installed with (root).")
+    endif()
+  endif()
+endforeach()
+file(REMOVE "${MANIFEST}")
