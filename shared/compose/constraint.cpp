@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compose/constraint.h"
+
+#include "geometry/error.h"
+#include "voxel/rasterize.h"
+
+namespace parts {
+namespace {
+
+/// Squared distance from a point to a triangle (its nearest point by Ericson's regions).
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
+  if (n.squaredNorm() > 0) {
+    const Vec3 q = p - a;
+    const double u = q.cross(ac).dot(n) / n.squaredNorm(), v = ab.cross(q).dot(n) / n.squaredNorm();
+    if (u >= 0 && v >= 0 && u + v <= 1) return std::pow(q.dot(n), 2) / n.squaredNorm();
+  }
+  const auto to_segment = [&](const Vec3& s, const Vec3& e) {
+    const double length = (e - s).squaredNorm();
+    const double t = length > 0 ? std::clamp((p - s).dot(e - s) / length, 0.0, 1.0) : 0;
+    return (s + t * (e - s) - p).squaredNorm();
+  };
+  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+void mark_nearest(const Mesh& mesh, const Vec3& point, std::vector<char>& keep) {
+  int nearest = -1;
+  double least = 1e300;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (const double d = squared_distance(point, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)); d < least)
+      least = d, nearest = f;
+  if (nearest >= 0) keep[nearest] = 1;
+}
+
+void mark_touching(const Mesh& mesh, const Box& box, std::vector<char>& keep) {
+  // The box as a unit cell, so that the voxel test serves; a flat box is one of a hair's thickness.
+  const Vec3 size = box.sizes().cwiseMax(1e-9 * box.sizes().maxCoeff());
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (!box.intersects(mesh.face_box(f))) continue;
+    std::array<Vec3, 3> p;
+    for (int k = 0; k < 3; ++k) p[k] = (mesh.corner(f, k) - box.min()).cwiseQuotient(size);
+    TriangleBoxTest(p[0], p[1], p[2]).for_each_box({1, 1, 1}, [&](int, int, int) { keep[f] = 1; });
+  }
+}
+
+}  // namespace
+
+std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec3& box_min, const Vec3& box_max,
+                                    const char* model) {
+  const std::string of = std::string(" of model ") + model;
+  if (mesh.faces.empty())
+    throw UserError(std::string("Model ") + model + " has no faces; choose a layer that holds a triangle mesh.");
+  std::vector<char> keep(mesh.faces.size(), 0);
+  if (by == ConstraintBy::SelectedFaces) {
+    if (!mesh.face_selected.empty()) keep = mesh.face_selected;
+  } else if (by == ConstraintBy::SelectedVertices) {
+    if (!mesh.vertex_selected.empty())
+      for (int f = 0; f < mesh.face_count(); ++f)
+        for (int v : mesh.faces[f]) keep[f] |= mesh.vertex_selected[v];
+  } else {
+    if (!box_min.allFinite() || !box_max.allFinite())
+      throw UserError("The box to keep" + of + " is not finite; give its corners in world units.");
+    if ((box_max - box_min).minCoeff() < 0)
+      throw UserError("The box to keep" + of + " is inside out; every coordinate of its Max must be at least that of its Min.");
+    if (box_min == box_max)
+      mark_nearest(mesh, box_min, keep);
+    else
+      mark_touching(mesh, Box(box_min, box_max), keep);
+  }
+  if (std::find(keep.begin(), keep.end(), 1) == keep.end()) {
+    if (by == ConstraintBy::SelectedFaces)
+      throw UserError("No face" + of + " is selected; select the faces that must survive, or give a box or a point.");
+    if (by == ConstraintBy::SelectedVertices)
+      throw UserError("No vertex" + of + " with a face is selected; select the vertices that must survive, or give a box or a point.");
+    throw UserError("The box to keep" + of + " touches no face of it; move or enlarge the box.");
+  }
+  return keep;
+}
+
+}  // namespace parts

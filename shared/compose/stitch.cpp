@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compose/stitch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/attributes.h"
+
+namespace parts {
+namespace {
+
+/// Indices (in a, in b) of the nearest vertices of two polylines.
+std::array<int, 2> nearest_pair(const Mesh& mesh, const std::vector<int>& a, const std::vector<int>& b) {
+  std::array<int, 2> best{0, 0};
+  double least = 1e300;
+  for (int i = 0; i < int(a.size()); ++i)
+    for (int j = 0; j < int(b.size()); ++j)
+      if (const double d = (mesh.vertices[a[i]] - mesh.vertices[b[j]]).squaredNorm(); d < least)
+        least = d, best = {i, j};
+  return best;
+}
+
+/// Which polyline advances at each step of the strip, from (0, 0) to the ends:
+/// the path through the table of cross edges with the smallest sum of lengths.
+std::vector<char> shortest_strip(const Mesh& mesh, const std::vector<int>& a, const std::vector<int>& b) {
+  const int m = int(a.size()), n = int(b.size());
+  const auto cross = [&](int i, int j) { return (mesh.vertices[a[i]] - mesh.vertices[b[j]]).norm(); };
+  // Very long contours are searched near the diagonal only, to bound the table.
+  constexpr long kTable = 40'000'000;
+  const int half = long(m) * n <= kTable ? n : std::max<int>(64, int(kTable / m / 2));
+  const auto from = [&](int i) { return std::max(0, int(long(i) * n / m) - half); };
+  const auto to = [&](int i) { return std::min(n - 1, int(long(i + 1) * n / m) + half); };
+  std::vector<std::vector<char>> by_a(m);  // whether the step into (i, j) advanced a
+  std::vector<double> last(n, 1e300), row(n, 1e300);
+  for (int i = 0; i < m; ++i) {
+    std::fill(row.begin(), row.end(), 1e300);
+    by_a[i].resize(to(i) - from(i) + 1);
+    for (int j = from(i); j <= to(i); ++j) {
+      const double via_a = i > 0 ? last[j] : 1e300, via_b = j > from(i) ? row[j - 1] : 1e300;
+      by_a[i][j - from(i)] = via_a <= via_b;
+      row[j] = (i == 0 && j == 0 ? 0 : std::min(via_a, via_b)) + cross(i, j);
+    }
+    last.swap(row);
+  }
+  std::vector<char> steps;
+  for (int i = m - 1, j = n - 1; i > 0 || j > 0;) {
+    const bool a_advanced = j == 0 || (i > 0 && by_a[i][j - from(i)]);
+    steps.push_back(a_advanced);
+    --(a_advanced ? i : j);
+  }
+  std::reverse(steps.begin(), steps.end());
+  return steps;
+}
+
+/// The contour as an open polyline; a closed one from vertex `start` around to it.
+std::vector<int> unrolled(const Loop& loop, int start) {
+  std::vector<int> v = loop.vertices;
+  if (!loop.closed) return v;
+  std::rotate(v.begin(), v.begin() + start, v.end());
+  v.push_back(v.front());
+  return v;
+}
+
+}  // namespace
+
+bool same_direction(const Mesh& mesh, const Loop& a, const Loop& b) {
+  const auto [i, j] = nearest_pair(mesh, a.vertices, b.vertices);
+  const auto ahead = [&](const Loop& l, int k) {
+    const int step = std::max(1, l.size() / 10);
+    const int to = l.closed ? (k + step) % l.size() : std::min(k + step, l.size() - 1);
+    const int from = !l.closed && to == k ? std::max(0, k - step) : k;
+    return Vec3(mesh.vertices[l.vertices[to]] - mesh.vertices[l.vertices[from]]);
+  };
+  return ahead(a, i).dot(ahead(b, j)) > 0;
+}
+
+void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like) {
+  Loop back = b;
+  std::reverse(back.vertices.begin(), back.vertices.end());
+  const auto [i0, j0] = nearest_pair(mesh, a.vertices, back.vertices);
+  const std::vector<int> p = unrolled(a, i0), q = unrolled(back, j0);
+  int i = 0, j = 0;
+  for (const char a_advances : shortest_strip(mesh, p, q)) {
+    if (a_advances) {
+      add_face_like(mesh, like[p[i]], {p[i + 1], p[i], q[j]});
+      ++i;
+    } else {
+      add_face_like(mesh, like[q[j]], {q[j], q[j + 1], p[i]});
+      ++j;
+    }
+  }
+}
+
+void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like) {
+  std::vector<int> ring = loop.vertices;
+  // The area vector's direction says which ears are convex.
+  Vec3 up = Vec3::Zero();
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    up += (mesh.vertices[ring[k]] - mesh.vertices[ring[0]]).cross(mesh.vertices[ring[(k + 1) % ring.size()]] - mesh.vertices[ring[0]]);
+  up.normalize();
+  while (ring.size() > 3) {
+    const int n = int(ring.size());
+    int ear = 0;
+    double best = -1e300;
+    for (int k = 0; k < n; ++k) {
+      const Vec3 &u = mesh.vertices[ring[(k + n - 1) % n]], &v = mesh.vertices[ring[k]], &w = mesh.vertices[ring[(k + 1) % n]];
+      const Vec3 e = u - v, f = w - v;
+      const double lengths = e.norm() * f.norm();
+      const double turn = lengths > 0 ? f.cross(e).dot(up) / lengths : 0;
+      // Convex and sharp first: the chord that replaces the corner is short.
+      const double score = (turn >= 0 ? 1 : -1) - (u - w).norm() / (e.norm() + f.norm() + 1e-300);
+      if (score > best) best = score, ear = k;
+    }
+    const int u = ring[(ear + n - 1) % n], v = ring[ear], w = ring[(ear + 1) % n];
+    add_face_like(mesh, like[v], {w, v, u});
+    ring.erase(ring.begin() + ear);
+  }
+  if (ring.size() == 3) add_face_like(mesh, like[ring[0]], {ring[2], ring[1], ring[0]});
+}
+
+}  // namespace parts

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "compose/loops.h"
+
+namespace parts {
+
+/// Whether two facing contours run the same way: the dot product of the vectors
+/// from their nearest vertices to those 10 % of the way on (thesis 3.2.5).
+bool same_direction(const Mesh& mesh, const Loop& a, const Loop& b);
+
+/// Zippers the gap between two facing contours, a's half-edges and b's running
+/// opposite ways. Of all strips between them the one with the shortest cross
+/// edges is taken, from the nearest pair of vertices on. Faces are added to the
+/// mesh, dressed as face like[v] of the nearest contour vertex v.
+void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like);
+
+/// Closes a contour with triangles between its own vertices, ear by ear, the
+/// best-shaped first.
+void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like);
+
+}  // namespace parts

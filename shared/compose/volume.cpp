@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compose/volume.h"
+
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
+#include "voxel/memory.h"
+#include "voxel/rasterize.h"
+
+namespace parts {
+namespace {
+
+std::string quoted(const char* name) { return std::string("Model ") + name; }
+
+bool any(const std::vector<char>& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
+
+double area(const Mesh& m, int f) {
+  return 0.5 * (m.corner(f, 1) - m.corner(f, 0)).cross(m.corner(f, 2) - m.corner(f, 0)).norm();
+}
+
+/// Edge-connected pieces of the faces that are not wholly inside the volume,
+/// appended to voxels.outer.
+void add_outer_pieces(Model& model, bool of_a, const Box& volume, JointVoxels& voxels) {
+  const Mesh& mesh = model.prepared.mesh;
+  model.piece.assign(mesh.faces.size(), -1);
+  std::vector<char> outer(mesh.faces.size(), 0);
+  for (int f = 0; f < mesh.face_count(); ++f) outer[f] = !volume.contains(mesh.face_box(f));
+  if (!any(outer)) return;
+  DisjointSets sets(mesh.face_count());
+  for_each_mesh_edge(sorted_half_edges(mesh), [&](auto first, auto last) {
+    for (auto e = first + 1; e < last; ++e)
+      if (outer[first->face] && outer[e->face]) sets.unite(first->face, e->face);
+  });
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (!outer[f]) continue;
+    const int root = sets.find(f);
+    if (root == f) model.piece[f] = int(voxels.outer.size()), voxels.outer.push_back({of_a, false, {}});
+    model.piece[f] = model.piece[root];
+    OuterPiece& piece = voxels.outer[model.piece[f]];
+    piece.keep |= model.keep[f] != 0;
+    for_each_voxel(voxels.grid, mesh, f, [&](std::size_t v) { piece.voxels.push_back(v); });
+  }
+  for (OuterPiece& piece : voxels.outer) {
+    std::sort(piece.voxels.begin(), piece.voxels.end());
+    piece.voxels.erase(std::unique(piece.voxels.begin(), piece.voxels.end()), piece.voxels.end());
+  }
+}
+
+void check_memory(const Model& a, const Model& b, const Grid& grid, int resolution) {
+  double surface = 0;
+  for (const Model* m : {&a, &b})
+    for (int f = 0; f < m->prepared.mesh.face_count(); ++f) surface += area(m->prepared.mesh, f);
+  // A dozen bit sets, and what the graph holds a surface voxel.
+  const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
+  const double bytes = 2.5 * cells + 400.0 * 2.5 * surface / (grid.size * grid.size);
+  const double have = available_memory();
+  if (cells < 9e15 && (have <= 0 || bytes < 0.8 * have)) return;
+  const auto gigabytes = [](double x) { return std::to_string(std::max(1L, std::lround(std::min(x, 9e17) / 1e9))); };
+  const int fits = std::max(1, int(resolution * std::cbrt(0.7 * have / bytes)));
+  throw UserError("A resolution of " + std::to_string(resolution) + " needs about " + gigabytes(bytes) +
+                  " GB of memory and " + gigabytes(have) + " GB are free; choose a Resolution of " +
+                  std::to_string(fits) + " or less, or 0.");
+}
+
+}  // namespace
+
+Model make_model(const Part& part, const char* name) {
+  if (part.mesh.faces.empty())
+    throw UserError(quoted(name) + " has no faces; choose a layer that holds a triangle mesh.");
+  if (part.keep.size() != part.mesh.faces.size() || !any(part.keep))
+    throw UserError("Nothing of model " + std::string(name) +
+                    " is marked to be kept; select faces on it, or give a box or a point.");
+  Model m{name, prepare(part.mesh), {}, {}};
+  if (m.prepared.mesh.faces.empty())
+    throw UserError(quoted(name) + " has no usable face (all have non-finite or coinciding corners); clean the mesh first.");
+  for (int f : m.prepared.source_face) m.keep.push_back(part.keep[f]);
+  if (!any(m.keep))
+    throw UserError("What is marked to be kept of model " + std::string(name) +
+                    " has no usable face (non-finite or coinciding corners); clean the mesh or mark more.");
+  return m;
+}
+
+Box transition_volume(const Model& a, const Model& b, const Box& asked) {
+  const Box box_a = a.prepared.mesh.bounds(), box_b = b.prepared.mesh.bounds();
+  if (asked.isEmpty()) {
+    const Box all = box_a.merged(box_b);
+    if (!(all.sizes().maxCoeff() > 0)) throw UserError("The models have no extent; choose layers that hold surfaces.");
+    return all;
+  }
+  if (!asked.min().allFinite() || !asked.max().allFinite())
+    throw UserError("The volume's corners are not finite numbers; give VolumeMin and VolumeMax in world units.");
+  if (!(asked.sizes().minCoeff() > 0))
+    throw UserError("The volume has no thickness; make every coordinate of VolumeMax larger than that of VolumeMin.");
+  for (const auto& [model, box] : {std::pair(&a, &box_a), std::pair(&b, &box_b)})
+    if (!asked.intersects(*box))
+      throw UserError("The volume misses model " + std::string(model->name) +
+                      "; move the volume to where both models are.");
+  return asked;
+}
+
+int natural_resolution(const Model& a, const Model& b, const Box& volume) {
+  // The edge of an equilateral triangle of the mean area, over what lies in the volume.
+  double surface = 0, faces = 0;
+  for (const Model* m : {&a, &b})
+    for (int f = 0; f < m->prepared.mesh.face_count(); ++f)
+      if (volume.intersects(m->prepared.mesh.face_box(f))) surface += area(m->prepared.mesh, f), ++faces;
+  const double edge = std::sqrt(std::max(surface / std::max(faces, 1.0), 1e-300) * 4 / std::sqrt(3.0));
+  return int(std::clamp(volume.sizes().maxCoeff() / edge, 48.0, 192.0));
+}
+
+JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, int threads) {
+  const Grid grid = Grid::over(volume, resolution);
+  check_memory(a, b, grid, resolution);
+  const auto inside = [&](Model& m) {
+    std::vector<char> keep(m.keep.size(), 0);
+    for (std::size_t f = 0; f < keep.size(); ++f)
+      keep[f] = m.keep[f] && volume.intersects(m.prepared.mesh.face_box(int(f)));
+    return keep;
+  };
+  const VoxelSet set_a = rasterize(a.prepared.mesh, {}, grid, threads), set_b = rasterize(b.prepared.mesh, {}, grid, threads);
+  const VoxelSet keep_a = rasterize(a.prepared.mesh, inside(a), grid, threads);
+  const VoxelSet keep_b = rasterize(b.prepared.mesh, inside(b), grid, threads);
+  for (const auto& [model, set, keep] : {std::tuple(&a, &set_a, &keep_a), std::tuple(&b, &set_b, &keep_b)}) {
+    if (set->size() == 0)
+      throw UserError("The volume misses model " + std::string(model->name) + "; move the volume to where both models are.");
+    if (keep->size() == 0)
+      throw UserError("What is to be kept of model " + std::string(model->name) +
+                      " lies outside the volume; enlarge the volume or mark a part inside it.");
+  }
+  JointVoxels voxels = join(grid, set_a, set_b, keep_a, keep_b);
+  add_outer_pieces(a, true, volume, voxels);
+  add_outer_pieces(b, false, volume, voxels);
+  return voxels;
+}
+
+std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& voxels) {
+  std::vector<Eigen::Vector3f> sum(voxels.size(), Eigen::Vector3f::Zero());
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 n = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).normalized();
+    if (!n.allFinite()) continue;
+    for_each_voxel(voxels.grid, mesh, f, [&](std::size_t v) { sum[voxels.set.node(v)] += n.cast<float>(); });
+  }
+  return sum;
+}
+
+int natural_reach(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
+                  const std::vector<Eigen::Vector3f>& normal_b) {
+  constexpr int kMost = 3;
+  std::array<long, kMost + 1> at{};
+  for (int n = 0; n < int(voxels.size()); ++n) {
+    if (!(voxels.flags[n] & kHasA)) continue;
+    const std::array<int, 3> c = voxels.grid.cell(voxels.cells[n]);
+    const Eigen::Vector3f a = normal_a[n].normalized();
+    int nearest = kMost + 1;
+    for (int k = -kMost; k <= kMost; ++k)
+      for (int j = -kMost; j <= kMost; ++j)
+        for (int i = -kMost; i <= kMost; ++i) {
+          const int d = std::max({std::abs(i), std::abs(j), std::abs(k)});
+          if (d >= nearest) continue;
+          const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k);
+          if (m >= 0 && (voxels.flags[m] & kHasB) && a.dot(normal_b[m].normalized()) > 0.7f) nearest = d;
+        }
+    if (nearest <= kMost) ++at[nearest];
+  }
+  const long all = at[0] + at[1] + at[2] + at[3];
+  long within = 0;
+  for (int d = 0; d <= kMost; ++d)
+    if ((within += at[d]) * 10 >= all * 9) return d;
+  return kMost;
+}
+
+}  // namespace parts

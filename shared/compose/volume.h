@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "compose/compose.h"
+#include "geometry/prepare.h"
+#include "voxel/joint.h"
+
+namespace parts {
+
+/// A model ready to be cut: its prepared mesh and its flags.
+struct Model {
+  const char* name;  ///< in sentences: "A" or "B"
+  Prepared prepared;
+  std::vector<char> keep;   ///< per face: must survive
+  std::vector<int> piece;   ///< per face: number of its outer piece in JointVoxels, -1 inside the volume
+};
+
+/// Prepares a part. @throws UserError  no face, or no constraint
+Model make_model(const Part& part, const char* name);
+
+/// The box in which the models may be joined: the user's, or both models'.
+/// @throws UserError  it has no thickness, is not finite, or misses a model
+Box transition_volume(const Model& a, const Model& b, const Box& asked);
+
+/// Voxels along the longest side from the meshes' mean edge.
+int natural_resolution(const Model& a, const Model& b, const Box& volume);
+
+/// Rasterises both models. Sets Model::piece.
+/// @throws UserError  a constraint outside the volume, both constraints in one
+///                    voxel, or not enough memory (asked before it is taken)
+JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, int threads);
+
+/// Per node: the sum of the unit normals of a model's faces that touch the voxel.
+std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& voxels);
+
+/// How far the models must be allowed to be apart to count as meeting: the
+/// smallest distance (voxels, at most 3) that nine tenths of the nearly
+/// parallel, nearby surface keeps.
+int natural_reach(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
+                  const std::vector<Eigen::Vector3f>& normal_b);
+
+}  // namespace parts

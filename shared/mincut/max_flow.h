@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Boykov and Kolmogorov's max-flow (libmaxflow), with the capacities that the
+// cuts here need: 32-bit edges, 64-bit terminals and total.
+#define MAXFLOW_INCLUDE_TEMPLATE_IMPLEMENTATION
+#include <maxflow.h>
+
+#include <cstdint>
+
+namespace parts {
+
+using FlowGraph = maxflow::Graph<int, std::int64_t, std::int64_t>;
+constexpr std::int64_t kUncuttableTerminal = std::int64_t(1) << 60;
+constexpr int kUncuttable = 1 << 30;
+
+}  // namespace parts

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "voxel/bits.h"
+#include "voxel/grid.h"
+
+namespace parts {
+
+/// The separating-axis test of one triangle against unit boxes, in voxel units
+/// (Akenine-Möller 2001). Boxes are taken a hair larger than they are, so that
+/// rounding never lets a surface slip between two voxels.
+class TriangleBoxTest {
+ public:
+  TriangleBoxTest(const Vec3& a, const Vec3& b, const Vec3& c) : lo_(a.cwiseMin(b).cwiseMin(c)), hi_(a.cwiseMax(b).cwiseMax(c)) {
+    const Vec3 edge[3] = {b - a, c - b, a - c};
+    normal_ = edge[0].cross(edge[1]);
+    int n = 0;
+    for (int e = 0; e < 3; ++e)
+      for (int d = 0; d < 3; ++d) {
+        const Vec3 axis = edge[e].cross(Vec3::Unit(d));
+        const double pa = axis.dot(a), pb = axis.dot(b), pc = axis.dot(c), r = kHalf * axis.cwiseAbs().sum();
+        axis_[n] = axis, from_[n] = std::min({pa, pb, pc}) - r, to_[n] = std::max({pa, pb, pc}) + r, ++n;
+      }
+    const double p = normal_.dot(a), r = kHalf * normal_.cwiseAbs().sum();
+    plane_from_ = p - r, plane_to_ = p + r;
+  }
+
+  /// Calls visit(i, j, k) for every unit box in [0, dims) that the triangle
+  /// touches; the work grows with the triangle's area, not with its box.
+  template <class Visit>
+  void for_each_box(const std::array<int, 3>& dims, const Visit& visit) const {
+    std::array<int, 3> from, to;
+    for (int d = 0; d < 3; ++d) {
+      from[d] = std::max(0, int(std::floor(std::clamp(lo_[d] - kHair, -1.0, 2e9))));
+      to[d] = std::min(dims[d] - 1, int(std::floor(std::clamp(hi_[d] + kHair, -1.0, 2e9))));
+      if (from[d] > to[d]) return;
+    }
+    if (from == to) return void(visit(from[0], from[1], from[2]));
+    int w;  // the axis along which the triangle is flattest: few boxes a column
+    normal_.cwiseAbs().maxCoeff(&w);
+    const int u = (w + 1) % 3, v = (w + 2) % 3;
+    Vec3 center;
+    for (int iv = from[v]; iv <= to[v]; ++iv)
+      for (int iu = from[u]; iu <= to[u]; ++iu) {
+        center[u] = iu + 0.5, center[v] = iv + 0.5;
+        int w0 = from[w], w1 = to[w];
+        if (normal_[w] != 0) {
+          const double part = normal_[u] * center[u] + normal_[v] * center[v];
+          double c0 = (plane_from_ - part) / normal_[w], c1 = (plane_to_ - part) / normal_[w];
+          if (c0 > c1) std::swap(c0, c1);
+          w0 = std::max(w0, int(std::ceil(std::max(c0 - 0.5 - kHair, -1.0))));
+          w1 = std::min(w1, int(std::floor(std::min(c1 - 0.5 + kHair, 2e9))));
+        }
+        for (int iw = w0; iw <= w1; ++iw) {
+          center[w] = iw + 0.5;
+          if (!separated(center)) {
+            std::array<int, 3> c;
+            c[u] = iu, c[v] = iv, c[w] = iw;
+            visit(c[0], c[1], c[2]);
+          }
+        }
+      }
+  }
+
+ private:
+  static constexpr double kHair = 1e-6, kHalf = 0.5 + kHair;
+
+  bool separated(const Vec3& center) const {
+    for (int n = 0; n < 9; ++n) {
+      const double p = axis_[n].dot(center);
+      if (p < from_[n] || p > to_[n]) return true;
+    }
+    return false;
+  }
+
+  Vec3 lo_, hi_, normal_;
+  Vec3 axis_[9];
+  double from_[9], to_[9], plane_from_, plane_to_;
+};
+
+/// Calls visit(voxel index) for every voxel of the grid that a triangle touches.
+template <class Visit>
+void for_each_voxel(const Grid& grid, const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) {
+  TriangleBoxTest(grid.to_grid(a), grid.to_grid(b), grid.to_grid(c))
+      .for_each_box(grid.dims, [&](int i, int j, int k) { visit(grid.index(i, j, k)); });
+}
+template <class Visit>
+void for_each_voxel(const Grid& grid, const Mesh& mesh, int face, const Visit& visit) {
+  for_each_voxel(grid, mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2), visit);
+}
+
+/// The voxels that the faces with flag 1 touch (no flags: all faces).
+VoxelSet rasterize(const Mesh& mesh, const std::vector<char>& flags, const Grid& grid, int threads);
+
+}  // namespace parts
