@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=bash
 # For the scripts demo/NAME, which './run demo NAME' starts in the empty folder
 # $OUT with ROOT (the checkout), STAGE (the stage tree) and SCRIPTS (the .mlx
 # templates) set. A demo starts with

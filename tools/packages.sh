@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=bash
 # Sourced after progress.sh: the Debian packages of each task, and their
 # installation. Nothing is asked of apt when nothing is missing.
 

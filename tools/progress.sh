@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=bash
 # Sourced: says what happens, and how long is left of what takes long.
 
 say() { printf '%s\n' "$*"; }
