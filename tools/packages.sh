@@ -29,7 +29,7 @@ need_packages() {
   say "Asking apt for its newest lists ..."
   "${as_root[@]}" apt-get update </dev/null >"$apt_log" 2>&1 || true  # what counts is whether the install works
   if ! install_packages "${missing[@]}"; then
-    grep -E '^(E|W): ' "$apt_log" | tail -4 >&2 || true
+    grep -E '^(E|W|dpkg): ' "$apt_log" | tail -4 >&2 || true
     local cause
     cause=$(apt_failure "$apt_log")
     rm -f "$apt_log"
@@ -46,22 +46,20 @@ missing_packages() {
   done
 }
 
-# Uses as_root and apt_log of need_packages.
+# Uses as_root and apt_log of need_packages. apt reports its progress on
+# descriptor 3, which only the shell inside sudo may open.
 install_packages() {
-  local stage=
+  local line stage="" status=0
   progress_begin
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get install -y --no-install-recommends \
-    -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 -o Acquire::Retries=2 "$@" </dev/null 2>&1 |
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C bash -c 'exec apt-get "$@" 3>&1 1>&2' apt-get \
+    install -y --no-install-recommends -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 -o Acquire::Retries=2 "$@" \
+    </dev/null 2>>"$apt_log" |
     while IFS= read -r line; do
-      if [[ $line =~ ^(dl|pm)status:.*:([0-9]+)\.[0-9]+:(.*) ]]; then
-        [[ $stage == "${BASH_REMATCH[1]}" ]] || progress_begin
-        stage=${BASH_REMATCH[1]}
-        progress "${BASH_REMATCH[2]}" "$([[ $stage == dl ]] && echo downloading || echo "${BASH_REMATCH[3]}")"
-      else
-        echo "$line" >>"$apt_log"
-      fi
-    done
-  local status=$?
+      [[ $line =~ ^(dl|pm)status:.*:([0-9]+)\.[0-9]+:(.*) ]] || continue
+      [[ $stage == "${BASH_REMATCH[1]}" ]] || progress_begin
+      stage=${BASH_REMATCH[1]}
+      progress "${BASH_REMATCH[2]}" "$([[ $stage == dl ]] && echo Downloading || echo "${BASH_REMATCH[3]}")"
+    done || status=$?
   progress_end
   return $status
 }
@@ -71,6 +69,8 @@ apt_failure() {
   case $(cat "$1") in
     *"enough free space"* | *"No space left"*) echo "The disk is full; free some space and try again." ;;
     *"Could not get lock"*) echo "Another program is installing packages; wait until it has finished and try again." ;;
+    *"dpkg was interrupted"*)
+      echo "An earlier installation was interrupted; run 'dpkg --configure -a' as root and try again." ;;
     *"resolving"* | *"Could not connect"* | *"Failed to fetch"* | *"Connection "*)
       echo "Debian's packages could not be downloaded; check the network (and apt's sources) and try again." ;;
     *"Unable to locate package"* | *"no installation candidate"*)
