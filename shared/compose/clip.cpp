@@ -99,19 +99,32 @@ void refine(Work& w, const ClipField& field, int threads) {
     else
       for (int k = 0; k < 3; ++k) whole[edge_key(t[k], t[(k + 1) % 3])] = 1;
   }
-  while (true) {
+  // Each round halves what is too long; flat faces beside an edge that must
+  // stay whole could go on for ever.
+  double most = 0;
+  for (int f : zone) most = std::max(most, crossed[f] ? longest(f) : 0);
+  const int rounds = most > field.max_edge ? 2 + int(std::log2(std::min(most / field.max_edge, 1e6))) : 0;
+  for (int round = 0; round < rounds; ++round) {
     EdgePoints mid;
     for (int f : zone)
-      if (crossed[f])
+      if (crossed[f]) {
+        // Beside an edge that must stay whole, splitting the others down to
+        // its length would never end.
+        double enough = field.max_edge;
+        const auto stays = [&](int a, int b) { return whole.count(edge_key(a, b)) > 0; };
+        const auto length = [&](int a, int b) { return (w.mesh.vertices[a] - w.mesh.vertices[b]).norm(); };
+        const Triangle t = w.mesh.faces[f];
+        for (int k = 0; k < 3; ++k)
+          if (stays(t[k], t[(k + 1) % 3])) enough = std::max(enough, 1.5 * length(t[k], t[(k + 1) % 3]));
         for (int k = 0; k < 3; ++k) {
-          const int a = w.mesh.faces[f][k], b = w.mesh.faces[f][(k + 1) % 3];
-          if ((w.mesh.vertices[a] - w.mesh.vertices[b]).norm() <= field.max_edge || whole.count(edge_key(a, b)))
-            continue;
+          const int a = t[k], b = t[(k + 1) % 3];
+          if (length(a, b) <= enough || stays(a, b)) continue;
           if (const auto [it, fresh] = mid.try_emplace(edge_key(a, b), -1); fresh) {
             it->second = add_vertex_between(w.mesh, std::min(a, b), std::max(a, b), 0.5);
             w.value.push_back(field.value(w.mesh.vertices.back()));
           }
         }
+      }
     if (mid.empty()) return;
     std::vector<int> next;
     for (int f : zone) {

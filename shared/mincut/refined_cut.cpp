@@ -126,106 +126,209 @@ void for_each_link(const JointVoxels& voxels, const Places& places, const Nodes&
         visit(nodes.of_piece[k], false, nodes.of_place[i], true);
 }
 
-/// What is found in a region that the seam bounds.
-struct Region {
-  bool source = false, sink = false, seam = false, shared = false;
-  long only_a = 0, only_b = 0;
+/// The state of a refined cut while its sheets' sides are being settled.
+class RefinedCut {
+ public:
+  RefinedCut(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
+             const std::vector<Eigen::Vector3f>& normal_b, int reach)
+      : voxels_(voxels), reach_(reach), places_(find_places(voxels, reach)), nodes_(number_nodes(voxels, places_)) {
+    for (int i = 0; i < int(places_.cells.size()); ++i)
+      weight_.push_back(places_.shared[i] ? seam_weight(places_, i, normal_a, normal_b) : 0);
+    sheet_.resize(nodes_.count);
+    for (int i = 0; i < int(places_.cells.size()); ++i)
+      if (!places_.shared[i]) {
+        Sheet& s = sheet_[nodes_.of_place[i]];
+        s.of_a = flags(i) & kHasA;
+        ++s.size;
+      }
+    source_.assign(nodes_.count, 0), sink_ = source_;
+    for (int i = 0; i < int(places_.cells.size()); ++i) {
+      const int node = nodes_.of_place[i];
+      if (flags(i) & kKeepA) source_[node] = 1;
+      if (flags(i) & kKeepB) sink_[node + (places_.shared[i] ? 1 : 0)] = 1;
+    }
+    for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
+      Sheet& s = sheet_[nodes_.of_piece[k]];
+      s.of_a = voxels_.outer[k].of_a;
+      ++s.size;
+      if (voxels_.outer[k].keep) (s.of_a ? source_ : sink_)[nodes_.of_piece[k]] = 1;
+    }
+  }
+
+  void solve();
+  int settle_one_sided();
+  VoxelLabels labels() const;
+
+  double cost = 0;
+
+ private:
+  /// A region that one model alone occupies, whole.
+  struct Sheet {
+    bool of_a = false;
+    int size = 0;
+  };
+  /// What lies between seams.
+  struct Region {
+    bool source = false, sink = false, seam = false, shared = false;
+    long only_a = 0, only_b = 0;
+    std::int8_t label() const {
+      if (source) return VoxelLabels::kA;
+      if (sink) return VoxelLabels::kB;
+      // Cut off from both constraints: a sheet of one model alone is dropped;
+      // otherwise the larger share stays.
+      if (!shared) return only_a ? VoxelLabels::kB : VoxelLabels::kA;
+      return only_a > only_b ? VoxelLabels::kA : VoxelLabels::kB;
+    }
+  };
+
+  int flags(int place) const { return places_.voxel[place] < 0 ? 0 : voxels_.flags[places_.voxel[place]]; }
+  void find_regions();
+  const Region& region(int node) const { return regions_[region_of_[node]]; }
+
+  const JointVoxels& voxels_;
+  int reach_;
+  Places places_;
+  Nodes nodes_;
+  std::vector<int> weight_;            ///< per place
+  std::vector<Sheet> sheet_;           ///< per node
+  std::vector<char> source_, sink_;    ///< per node: tied to a terminal
+  std::vector<char> reached_, seam_;   ///< per node, after solve()
+  std::vector<int> region_of_;         ///< per node
+  std::vector<Region> regions_;
 };
 
-std::int8_t label_of(const Region& r) {
-  if (r.source) return VoxelLabels::kA;
-  if (r.sink) return VoxelLabels::kB;
-  // Cut off from both constraints: a sheet of one model alone goes, so that
-  // both models lose a side where they cross; otherwise the larger share stays.
-  if (!r.shared) return r.only_a ? VoxelLabels::kB : VoxelLabels::kA;
-  return r.only_a > r.only_b ? VoxelLabels::kA : VoxelLabels::kB;
+void RefinedCut::solve() {
+  const int n = int(places_.cells.size());
+  FlowGraph graph(nodes_.count, n * 4);
+  graph.add_node(nodes_.count);
+  for (int i = 0; i < n; ++i)
+    if (places_.shared[i]) graph.add_edge(nodes_.of_place[i], nodes_.of_place[i] + 1, weight_[i], 0);
+  for (int node = 0; node < nodes_.count; ++node)
+    if (source_[node] || sink_[node])
+      graph.add_tweights(node, source_[node] ? kUncuttableTerminal : 0, sink_[node] ? kUncuttableTerminal : 0);
+  for_each_link(voxels_, places_, nodes_, [&](int p, bool p_shared, int q, bool q_shared) {
+    graph.add_edge(p + p_shared, q, kUncuttable, 0);
+    graph.add_edge(q + q_shared, p, kUncuttable, 0);
+  });
+  cost = double(graph.maxflow()) / 64.0;
+
+  // The seam: entry reached from the source, exit not.
+  reached_.resize(nodes_.count);
+  for (int node = 0; node < nodes_.count; ++node)
+    reached_[node] = graph.what_segment(node, FlowGraph::SINK) == FlowGraph::SOURCE;
+  seam_.assign(nodes_.count, 0);
+  for (int i = 0; i < n; ++i)
+    if (const int node = nodes_.of_place[i]; places_.shared[i]) seam_[node] = reached_[node] && !reached_[node + 1];
+  find_regions();
+}
+
+void RefinedCut::find_regions() {
+  DisjointSets sets(nodes_.count);
+  for_each_link(voxels_, places_, nodes_, [&](int p, bool, int q, bool) {
+    if (!seam_[p] && !seam_[q]) sets.unite(p, q);
+  });
+  region_of_.resize(nodes_.count);
+  for (int node = 0; node < nodes_.count; ++node) region_of_[node] = sets.find(node);
+  regions_.assign(nodes_.count, {});
+  for_each_link(voxels_, places_, nodes_, [&](int p, bool, int q, bool) {
+    if (seam_[p] != seam_[q]) regions_[region_of_[seam_[p] ? q : p]].seam = true;
+  });
+  for (int i = 0; i < int(places_.cells.size()); ++i) {
+    const int node = nodes_.of_place[i];
+    if (seam_[node]) continue;
+    Region& r = regions_[region_of_[node]];
+    r.source |= reached_[node] != 0;
+    r.sink |= sink_[node] || (places_.shared[i] && sink_[node + 1]);
+    if (places_.shared[i])
+      r.shared = true;
+    else
+      ++(sheet_[node].of_a ? r.only_a : r.only_b);
+  }
+  for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
+    const int node = nodes_.of_piece[k];
+    Region& r = regions_[region_of_[node]];
+    r.source |= reached_[node] != 0;
+    r.sink |= sink_[node] != 0;
+    ++(voxels_.outer[k].of_a ? r.only_a : r.only_b);
+  }
+}
+
+/// Where surfaces cross, four sheets meet at the seam. If one model's sheets
+/// fall on both sides and the other's on one, only the first would be cut, and
+/// nothing would face its border. Ties the smallest free sheet of the uncut
+/// model to the other side. @return how many were tied
+int RefinedCut::settle_one_sided() {
+  constexpr int kVotes = 3;  // fewer voxels are noise
+  std::vector<int> votes(nodes_.count, 0);
+  int tied = 0;
+  for (std::size_t i = 0; i < places_.cells.size(); ++i) {
+    if (!places_.shared[i] || !seam_[nodes_.of_place[i]]) continue;
+    const std::array<int, 3> c = voxels_.grid.cell(places_.cells[i]);
+    std::vector<int> around[2];  // sheets of B, of A
+    const int reach = 2 + reach_;
+    for (int z = c[2] - reach; z <= c[2] + reach; ++z)
+      for (int y = c[1] - reach; y <= c[1] + reach; ++y)
+        for (int x = c[0] - reach; x <= c[0] + reach; ++x) {
+          const int p = voxels_.grid.inside(x, y, z) ? places_.set.node(voxels_.grid.index(x, y, z)) : -1;
+          if (p < 0 || places_.shared[p]) continue;
+          std::vector<int>& list = around[sheet_[nodes_.of_place[p]].of_a];
+          if (std::find(list.begin(), list.end(), nodes_.of_place[p]) == list.end()) list.push_back(nodes_.of_place[p]);
+        }
+    const auto cut = [&](const std::vector<int>& sheets) {
+      for (int s : sheets)
+        if (region(s).label() != region(sheets[0]).label()) return true;
+      return false;
+    };
+    for (const int uncut : {0, 1}) {
+      if (!cut(around[1 - uncut]) || cut(around[uncut]) || around[uncut].size() < 2) continue;
+      int smallest = -1;
+      for (int s : around[uncut])
+        if (!source_[s] && !sink_[s] && (smallest < 0 || sheet_[s].size < sheet_[smallest].size)) smallest = s;
+      if (smallest >= 0) ++votes[smallest];
+    }
+  }
+  for (int node = 0; node < nodes_.count; ++node)
+    if (votes[node] >= kVotes) (region(node).label() == VoxelLabels::kA ? sink_ : source_)[node] = 1, ++tied;
+  return tied;
+}
+
+VoxelLabels RefinedCut::labels() const {
+  VoxelLabels cut;
+  cut.cost = cost;
+  cut.connected = cost > 0;
+  cut.label.assign(voxels_.size(), VoxelLabels::kSeam);
+  const auto decided = [](const Region& r) { return r.source || r.sink || r.seam; };
+  std::vector<int> group(voxels_.size(), -1), group_of(nodes_.count, -1);
+  int groups = 0;
+  for (std::size_t i = 0; i < places_.cells.size(); ++i) {
+    const int node = nodes_.of_place[i], v = places_.voxel[i];
+    if (v < 0 || seam_[node]) continue;
+    if (decided(region(node))) {
+      cut.label[v] = region(node).label();
+    } else {
+      int& g = group_of[region_of_[node]];
+      if (g < 0) g = groups++;
+      group[v] = g;
+    }
+  }
+  label_isolated(voxels_, group, groups, cut.label);
+  for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
+    const Region& r = region(nodes_.of_piece[k]);
+    const bool of_a = voxels_.outer[k].of_a;
+    cut.outer.push_back(decided(r) ? r.label() : std::int8_t(of_a ? VoxelLabels::kA : VoxelLabels::kB));
+  }
+  return cut;
 }
 
 }  // namespace
 
 VoxelLabels refined_cut(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
                         const std::vector<Eigen::Vector3f>& normal_b, const RefinedOptions& options) {
-  const Places places = find_places(voxels, options.reach);
-  const Nodes nodes = number_nodes(voxels, places);
-  const int n = int(places.cells.size()), pieces = int(voxels.outer.size());
-
-  FlowGraph graph(nodes.count, n * 4);
-  graph.add_node(nodes.count);
-  for (int i = 0; i < n; ++i) {
-    const int node = nodes.of_place[i], entry = node, exit = node + (places.shared[i] ? 1 : 0);
-    if (places.shared[i]) graph.add_edge(entry, exit, seam_weight(places, i, normal_a, normal_b), 0);
-    const int flags = places.voxel[i] < 0 ? 0 : voxels.flags[places.voxel[i]];
-    if (flags & kKeepA) graph.add_tweights(entry, kUncuttableTerminal, 0);
-    if (flags & kKeepB) graph.add_tweights(exit, 0, kUncuttableTerminal);
-  }
-  for (int k = 0; k < pieces; ++k)
-    if (voxels.outer[k].keep)
-      graph.add_tweights(nodes.of_piece[k], voxels.outer[k].of_a ? kUncuttableTerminal : 0,
-                         voxels.outer[k].of_a ? 0 : kUncuttableTerminal);
-  for_each_link(voxels, places, nodes, [&](int p, bool p_shared, int q, bool q_shared) {
-    const int p_exit = p + p_shared, q_exit = q + q_shared;
-    graph.add_edge(p_exit, q, kUncuttable, 0);
-    graph.add_edge(q_exit, p, kUncuttable, 0);
-  });
-  VoxelLabels cut;
-  const std::int64_t flow = graph.maxflow();
-  cut.cost = double(flow) / 64.0;
-  cut.connected = flow > 0;
-
-  // The seam: entry reached from the source, exit not. What it leaves falls
-  // into regions.
-  const auto reached = [&](int node) { return graph.what_segment(node, FlowGraph::SINK) == FlowGraph::SOURCE; };
-  std::vector<char> seam(nodes.count, 0);
-  for (int i = 0; i < n; ++i)
-    if (const int node = nodes.of_place[i]; places.shared[i] && reached(node) && !reached(node + 1)) seam[node] = 1;
-  DisjointSets sets(nodes.count);
-  for_each_link(voxels, places, nodes, [&](int p, bool, int q, bool) {
-    if (!seam[p] && !seam[q]) sets.unite(p, q);
-  });
-  std::vector<Region> region(nodes.count);
-  for_each_link(voxels, places, nodes, [&](int p, bool, int q, bool) {
-    if (seam[p] != seam[q]) region[sets.find(seam[p] ? q : p)].seam = true;
-  });
-  for (int i = 0; i < n; ++i) {
-    const int node = nodes.of_place[i], flags = places.voxel[i] < 0 ? 0 : voxels.flags[places.voxel[i]];
-    if (seam[node]) continue;
-    Region& r = region[sets.find(node)];
-    r.source |= reached(node);
-    r.sink |= (flags & kKeepB) != 0;
-    if (places.shared[i])
-      r.shared = true;
-    else
-      ++(flags & kHasA ? r.only_a : r.only_b);
-  }
-  for (int k = 0; k < pieces; ++k) {
-    Region& r = region[sets.find(nodes.of_piece[k])];
-    r.source |= reached(nodes.of_piece[k]);
-    r.sink |= voxels.outer[k].keep && !voxels.outer[k].of_a;
-    ++(voxels.outer[k].of_a ? r.only_a : r.only_b);
-  }
-
-  cut.label.assign(voxels.size(), VoxelLabels::kSeam);
-  std::vector<int> group(voxels.size(), -1), group_of(nodes.count, -1);
-  int groups = 0;
-  for (int i = 0; i < n; ++i) {
-    const int node = nodes.of_place[i], v = places.voxel[i];
-    if (v < 0 || seam[node]) continue;
-    const int root = sets.find(node);
-    const Region& r = region[root];
-    if (r.source || r.sink || r.seam) {
-      cut.label[v] = label_of(r);
-    } else {
-      if (group_of[root] < 0) group_of[root] = groups++;
-      group[v] = group_of[root];
-    }
-  }
-  label_isolated(voxels, group, groups, cut.label);
-  for (int k = 0; k < pieces; ++k) {
-    const Region& r = region[sets.find(nodes.of_piece[k])];
-    cut.outer.push_back(r.source || r.sink || r.seam ? label_of(r)
-                                                     : std::int8_t(voxels.outer[k].of_a ? VoxelLabels::kA : VoxelLabels::kB));
-  }
-  return cut;
+  RefinedCut cut(voxels, normal_a, normal_b, options.reach);
+  cut.solve();
+  constexpr int kRounds = 12;  // each ties at least one more sheet; two or three do
+  for (int round = 0; round < kRounds && cut.settle_one_sided() > 0; ++round) cut.solve();
+  return cut.labels();
 }
 
 }  // namespace parts
