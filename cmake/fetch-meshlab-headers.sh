@@ -5,7 +5,7 @@
 # Debian's meshlab package leaves out. They are downloaded once from Debian's
 # source package of the same version, through the machine's own apt sources,
 # without touching its apt lists: no root needed.
-set -Eeuo pipefail
+set -euo pipefail
 
 fail() { echo "$*" >&2; exit 1; }
 say() { echo "$*" >&2; }
@@ -20,7 +20,9 @@ if [[ -f $headers/src/common/interfaces.h && -d $headers/vcglib/vcg ]]; then
 fi
 
 mkdir -p "$cache" 2>/dev/null || fail "The folder $cache cannot be written; set XDG_CACHE_HOME to one that can."
-trap 'say "MeshLab'\''s headers could not be put into $cache; check the free disk space and try again."' ERR
+free=$(df --output=avail -m "$cache" | tail -1)
+((free >= 300)) ||
+  fail "Only $((free)) MB are free on the disk of $cache, and MeshLab's source package needs 300 MB; free some and try again."
 work=$(mktemp -d "$cache/fetch.XXXXXX")  # beside the target, so that the last step is one rename
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work"/{sources.d,lists/partial,archives/partial,download}
