@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 # Sourced: says what happens, and how long is left of what takes long.
 
-say() { printf '%s\n' "$*"; }
+say() { printf '%s\n' "$@"; }
 fail() { printf '%s\n' "$*" >&2; exit 1; }
 
 clock() { printf '%d:%02d' $(($1 / 60)) $(($1 % 60)); }
