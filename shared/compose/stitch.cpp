@@ -63,15 +63,25 @@ std::vector<int> unrolled(const Loop& loop, int start) {
 
 }  // namespace
 
-bool same_direction(const Mesh& mesh, const Loop& a, const Loop& b) {
-  const auto [i, j] = nearest_pair(mesh, a.vertices, b.vertices);
+double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b) {
+  constexpr int kStarts = 32;
   const auto ahead = [&](const Loop& l, int k) {
     const int step = std::max(1, l.size() / 10);
-    const int to = l.closed ? (k + step) % l.size() : std::min(k + step, l.size() - 1);
-    const int from = !l.closed && to == k ? std::max(0, k - step) : k;
-    return Vec3(mesh.vertices[l.vertices[to]] - mesh.vertices[l.vertices[from]]);
+    int from = k, to = k + step;
+    if (l.closed)
+      to %= l.size();
+    else if (to >= l.size())
+      to = l.size() - 1, from = std::max(0, to - step);
+    return Vec3((mesh.vertices[l.vertices[to]] - mesh.vertices[l.vertices[from]]).normalized());
   };
-  return ahead(a, i).dot(ahead(b, j)) > 0;
+  double sum = 0;
+  const int starts = std::min(kStarts, a.size());
+  for (int s = 0; s < starts; ++s) {
+    const int i = int(long(s) * a.size() / starts);
+    const int j = nearest_pair(mesh, {a.vertices[i]}, b.vertices)[1];
+    sum += ahead(a, i).dot(ahead(b, j));
+  }
+  return sum / starts;
 }
 
 void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like) {

@@ -5,9 +5,10 @@
 
 namespace parts {
 
-/// Whether two facing contours run the same way: the dot product of the vectors
-/// from their nearest vertices to those 10 % of the way on (thesis 3.2.5).
-bool same_direction(const Mesh& mesh, const Loop& a, const Loop& b);
+/// How far two facing contours run the same way, from -1 (opposite) to 1: the
+/// dot product of the directions from their nearest vertices to those 10 % of
+/// the way on (thesis 3.2.5), averaged over starts all along the contours.
+double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b);
 
 /// Zippers the gap between two facing contours, a's half-edges and b's running
 /// opposite ways. Of all strips between them the one with the shortest cross

@@ -3,6 +3,6 @@
 
 namespace parts {
 
-Mesh transition_surface(const JointVoxels&, const VoxelLabels&, const Transition&) { return {}; }
+Mesh transition_surface(const JointVoxels&, const VoxelLabels&) { return {}; }
 
 }  // namespace parts

@@ -142,30 +142,28 @@ std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& 
   return sum;
 }
 
-int natural_reach(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
-                  const std::vector<Eigen::Vector3f>& normal_b) {
-  constexpr int kMost = 3;
-  std::array<long, kMost + 1> at{};
+double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Eigen::Vector3f>& normal_a,
+                    const std::vector<Eigen::Vector3f>& normal_b) {
+  constexpr int kNear = 3, kSeamZone = 5;
+  const auto any_around = [&](int node, int reach, const auto& test) {
+    const std::array<int, 3> c = voxels.grid.cell(voxels.cells[node]);
+    for (int k = -reach; k <= reach; ++k)
+      for (int j = -reach; j <= reach; ++j)
+        for (int i = -reach; i <= reach; ++i)
+          if (const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k); m >= 0 && test(m)) return true;
+    return false;
+  };
+  long doubled = 0, kept_a = 0, kept_b = 0;
   for (int n = 0; n < int(voxels.size()); ++n) {
-    if (!(voxels.flags[n] & kHasA)) continue;
-    const std::array<int, 3> c = voxels.grid.cell(voxels.cells[n]);
+    kept_b += (voxels.flags[n] & kHasB) && labels.label[n] == VoxelLabels::kB;
+    if (!(voxels.flags[n] & kHasA) || labels.label[n] != VoxelLabels::kA) continue;
+    ++kept_a;
     const Eigen::Vector3f a = normal_a[n].normalized();
-    int nearest = kMost + 1;
-    for (int k = -kMost; k <= kMost; ++k)
-      for (int j = -kMost; j <= kMost; ++j)
-        for (int i = -kMost; i <= kMost; ++i) {
-          const int d = std::max({std::abs(i), std::abs(j), std::abs(k)});
-          if (d >= nearest) continue;
-          const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k);
-          if (m >= 0 && (voxels.flags[m] & kHasB) && a.dot(normal_b[m].normalized()) > 0.7f) nearest = d;
-        }
-    if (nearest <= kMost) ++at[nearest];
+    doubled += any_around(n, kNear, [&](int m) {
+      return (voxels.flags[m] & kHasB) && labels.label[m] == VoxelLabels::kB && a.dot(normal_b[m].normalized()) > 0.7f;
+    }) && !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
   }
-  const long all = at[0] + at[1] + at[2] + at[3];
-  long within = 0;
-  for (int d = 0; d <= kMost; ++d)
-    if ((within += at[d]) * 10 >= all * 9) return d;
-  return kMost;
+  return double(doubled) / double(std::max(1L, std::min(kept_a, kept_b)));
 }
 
 }  // namespace parts

@@ -3,6 +3,7 @@
 
 #include "compose/compose.h"
 #include "geometry/prepare.h"
+#include "mincut/labels.h"
 #include "voxel/joint.h"
 
 namespace parts {
@@ -33,10 +34,11 @@ JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, 
 /// Per node: the sum of the unit normals of a model's faces that touch the voxel.
 std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& voxels);
 
-/// How far the models must be allowed to be apart to count as meeting: the
-/// smallest distance (voxels, at most 3) that nine tenths of the nearly
-/// parallel, nearby surface keeps.
-int natural_reach(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
-                  const std::vector<Eigen::Vector3f>& normal_b);
+/// How much of the result lies in two layers: of the smaller model's kept
+/// voxels, the share (0..1) away from the seam that a nearly parallel kept
+/// surface of the other model passes within three voxels. Large where the cut
+/// joined two nested copies instead of crossing from one to the other.
+double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Eigen::Vector3f>& normal_a,
+                    const std::vector<Eigen::Vector3f>& normal_b);
 
 }  // namespace parts

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "compose/compose.h"
+#include "compose/volume.h"
+#include "mincut/labels.h"
+
+namespace parts {
+
+/// Constraints of both models pass through one voxel: the grid is too coarse.
+struct SharedVoxel : UserError {
+  SharedVoxel()
+      : UserError(
+            "What is to be kept of model A and of model B lies in the same voxel; mark parts farther apart, or raise "
+            "the Resolution.") {}
+};
+
+/// The joint voxels, their labels, and how far apart the models may be.
+struct Decision {
+  JointVoxels voxels;
+  VoxelLabels labels;
+  int reach = 0;
+};
+
+/// Finds the cut at one resolution. Labels that are not `connected` mean that
+/// the models do not meet between their constraints. Fills the report's
+/// figures on voxels and cut. @throws SharedVoxel, UserError
+Decision decide(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
+                ComposeReport& report);
+
+}  // namespace parts

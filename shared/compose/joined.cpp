@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compose/joined.h"
+
+#include "compose/seam.h"
+#include "compose/stitch.h"
+#include "geometry/attributes.h"
+
+namespace parts {
+
+Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipped& cb) {
+  Joined j;
+  j.mesh = ca.mesh;
+  append(j.mesh, cb.mesh);
+  const int first_b = ca.mesh.vertex_count();
+  j.seam = ca.cut_vertex;
+  j.seam.insert(j.seam.end(), cb.cut_vertex.begin(), cb.cut_vertex.end());
+  j.fixed.assign(j.mesh.vertices.size(), 0), j.closed = j.fixed;
+  j.like.assign(j.mesh.vertices.size(), -1);
+  for (int f = 0; f < j.mesh.face_count(); ++f) {
+    const bool from_b = f >= ca.mesh.face_count();
+    const Model& model = from_b ? b : a;
+    const int source = from_b ? cb.source_face[f - ca.mesh.face_count()] : ca.source_face[f];
+    j.tag.push_back(from_b);
+    for (int v : j.mesh.faces[f]) {
+      j.like[v] = f;
+      j.fixed[v] |= model.keep[source];
+      j.closed[v] = model.prepared.closed[model.prepared.component[source]];
+    }
+  }
+  j.loops_a = trace_loops(ca.border);
+  std::vector<std::array<int, 2>> border_b = cb.border;
+  for (auto& e : border_b) e[0] += first_b, e[1] += first_b;
+  j.loops_b = trace_loops(border_b);
+  return j;
+}
+
+namespace {
+
+/// Turns B's part over if the seam says clearly that it faces the other way.
+bool agree_on_orientation(Joined& j, std::vector<std::array<int, 2>>& pairs) {
+  double balance = 0, length = 0;
+  const auto agreement = [&](const auto& p) { return direction_agreement(j.mesh, j.loops_a[p[0]], j.loops_b[p[1]]); };
+  for (const auto& p : pairs) {
+    const double l = loop_length(j.mesh, j.loops_a[p[0]]);
+    balance += l * agreement(p), length += l;
+  }
+  const bool turn = balance > 0.5 * length;
+  if (turn) {
+    for (int f = 0; f < j.mesh.face_count(); ++f)
+      if (j.tag[f] == 1) {
+        std::swap(j.mesh.faces[f][1], j.mesh.faces[f][2]);
+        if (!j.mesh.wedges.empty()) std::swap(j.mesh.wedges[f].uv[1], j.mesh.wedges[f].uv[2]);
+      }
+    for (Loop& l : j.loops_b) std::reverse(l.vertices.begin(), l.vertices.end());
+  }
+  // What still runs the wrong way would make a twisted strip.
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& p) { return agreement(p) > 0; }), pairs.end());
+  return turn;
+}
+
+}  // namespace
+
+double stitch_parts(Joined& j, double max_gap, ComposeReport& report) {
+  std::vector<std::array<int, 2>> pairs = match_loops(j.mesh, j.loops_a, j.loops_b, max_gap, report.seam_gap);
+  report.reversed_b = agree_on_orientation(j, pairs);
+  std::vector<char> joined_a(j.loops_a.size(), 0), joined_b(j.loops_b.size(), 0);
+  for (const auto& [i, k] : pairs) {
+    joined_a[i] = joined_b[k] = 1;
+    report.seam_length += loop_length(j.mesh, j.loops_a[i]);
+    zipper(j.mesh, j.loops_a[i], j.loops_b[k], j.like);
+  }
+  report.loops_joined = int(pairs.size());
+  // A contour with none opposite: a closed model stays closed.
+  double unmatched = 0;
+  const auto finish = [&](const std::vector<Loop>& loops, const std::vector<char>& joined) {
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      if (joined[i]) continue;
+      unmatched += loop_length(j.mesh, loops[i]);
+      if (loops[i].closed && j.closed[loops[i].vertices[0]])
+        cap(j.mesh, loops[i], j.like), ++report.loops_capped;
+      else
+        ++report.loops_open;
+    }
+  };
+  finish(j.loops_a, joined_a), finish(j.loops_b, joined_b);
+  j.tag.resize(j.mesh.faces.size(), 2);
+  return unmatched;
+}
+
+void finish_seam(Joined& j, double voxel, const SeamSmoothing& smoothing) {
+  tidy_seam(j.mesh, j.seam, j.fixed, j.tag, 0.3 * voxel);
+  const std::vector<Vec3> before = j.mesh.vertices;
+  smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
+              smoothing.weight);
+  if (j.mesh.vertex_normal.empty()) return;
+  // Normals are the inputs' own but around the seam.
+  std::vector<Eigen::Vector3f> normals = j.mesh.vertex_normal;
+  update_normals(j.mesh);
+  std::vector<char> changed = j.seam;
+  for (const Triangle& f : j.mesh.faces) {
+    bool any = false;
+    for (int v : f) any |= j.seam[v] || before[v] != j.mesh.vertices[v];
+    if (any)
+      for (int v : f) changed[v] = 1;
+  }
+  for (std::size_t v = 0; v < normals.size(); ++v)
+    if (!changed[v]) j.mesh.vertex_normal[v] = normals[v];
+}
+
+}  // namespace parts
