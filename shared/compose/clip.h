@@ -9,9 +9,9 @@ namespace parts {
 
 /// What decides where a model is clipped.
 struct ClipField {
-  std::function<double(const Vec3&)> value;      ///< kept where positive
-  std::function<bool(const Mesh&, int)> crosses; ///< whether the zero set may pass through a face
-  double max_edge = 0;                           ///< world units; crossed faces are split to this before
+  std::function<double(const Vec3&)> value;       ///< kept where positive
+  std::function<bool(const Mesh&, int)> crosses;  ///< whether the zero set may pass through a face
+  double max_edge = 0;                            ///< world units; crossed faces are split to this before
 };
 
 /// A clipped model. Border half-edges run in their face's direction; their ends

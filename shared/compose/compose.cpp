@@ -26,11 +26,11 @@ class Clock {
 
 Transition make_transition(const Model& a, const Model& b, const Decision& d, Cut cut) {
   if (cut == Cut::Thesis) return Transition::along_voxels(d.voxels, d.labels);
-  return Transition::smooth(d.voxels, d.labels,
-                            crossing_points(a.prepared.mesh, b.prepared.mesh, d.voxels, d.labels));
+  return Transition::smooth(d.voxels, d.labels, crossing_points(a.prepared.mesh, b.prepared.mesh, d.voxels, d.labels));
 }
 
-Clipped clip_model(const Model& model, bool of_a, const Decision& d, const Transition& transition, Cut cut, int threads) {
+Clipped clip_model(const Model& model, bool of_a, const Decision& d, const Transition& transition, Cut cut,
+                   int threads) {
   const Mesh& mesh = model.prepared.mesh;
   const Grid& grid = d.voxels.grid;
   std::vector<signed char> pinned(mesh.faces.size(), 0);

@@ -61,7 +61,8 @@ std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec
     if (!box_min.allFinite() || !box_max.allFinite())
       throw UserError("The box to keep" + of + " is not finite; give its corners in world units.");
     if ((box_max - box_min).minCoeff() < 0)
-      throw UserError("The box to keep" + of + " is inside out; every coordinate of its Max must be at least that of its Min.");
+      throw UserError("The box to keep" + of +
+                      " is inside out; every coordinate of its Max must be at least that of its Min.");
     if (box_min == box_max)
       mark_nearest(mesh, box_min, keep);
     else
@@ -71,7 +72,8 @@ std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec
     if (by == ConstraintBy::SelectedFaces)
       throw UserError("No face" + of + " is selected; select the faces that must survive, or give a box or a point.");
     if (by == ConstraintBy::SelectedVertices)
-      throw UserError("No vertex" + of + " with a face is selected; select the vertices that must survive, or give a box or a point.");
+      throw UserError("No vertex" + of +
+                      " with a face is selected; select the vertices that must survive, or give a box or a point.");
     throw UserError("The box to keep" + of + " touches no face of it; move or enlarge the box.");
   }
   return keep;

@@ -12,8 +12,7 @@ Decision decide(Model& a, Model& b, const Box& volume, int resolution, const Com
   report.voxels_a = report.voxels_b = report.voxels_both = 0;
   for (int n = 0; n < int(d.voxels.size()); ++n) {
     const std::uint8_t flags = d.voxels.flags[n];
-    if ((flags & kKeepA) && (flags & kKeepB))
-      throw SharedVoxel();
+    if ((flags & kKeepA) && (flags & kKeepB)) throw SharedVoxel();
     report.voxels_a += (flags & kHasA) != 0, report.voxels_b += (flags & kHasB) != 0;
     report.voxels_both += d.voxels.both(n);
   }

@@ -70,19 +70,25 @@ double stitch_parts(Joined& j, double max_gap, ComposeReport& report) {
     zipper(j.mesh, j.loops_a[i], j.loops_b[k], j.like);
   }
   report.loops_joined = int(pairs.size());
-  // A contour with none opposite: a closed model stays closed.
-  double unmatched = 0;
-  const auto finish = [&](const std::vector<Loop>& loops, const std::vector<char>& joined) {
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (joined[i]) continue;
-      unmatched += loop_length(j.mesh, loops[i]);
-      if (loops[i].closed && j.closed[loops[i].vertices[0]])
-        cap(j.mesh, loops[i], j.like), ++report.loops_capped;
-      else
-        ++report.loops_open;
-    }
+  // What did not pair off is zippered by pieces. A contour with none opposite:
+  // a closed model stays closed.
+  const auto rest = [](const std::vector<Loop>& loops, const std::vector<char>& joined) {
+    std::vector<Loop> r;
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      if (!joined[i]) r.push_back(loops[i]);
+    return r;
   };
-  finish(j.loops_a, joined_a), finish(j.loops_b, joined_b);
+  double unmatched = 0;
+  for (const Loop& loop :
+       zipper_pieces(j.mesh, rest(j.loops_a, joined_a), rest(j.loops_b, joined_b), max_gap, j.like)) {
+    unmatched += loop_length(j.mesh, loop);
+    bool closed = loop.closed;
+    for (int v : loop.vertices) closed = closed && j.closed[v];
+    if (closed)
+      cap(j.mesh, loop, j.like), ++report.loops_capped;
+    else
+      ++report.loops_open;
+  }
   j.tag.resize(j.mesh.faces.size(), 2);
   return unmatched;
 }

@@ -11,11 +11,11 @@ namespace parts {
 /// The two clipped models in one mesh, with what is known of its elements.
 struct Joined {
   Mesh mesh;
-  std::vector<char> tag;    ///< per face: 0 from A, 1 from B, 2 from the stitch
-  std::vector<char> seam;   ///< per vertex: made by the cut
-  std::vector<char> fixed;  ///< per vertex: of a kept face
-  std::vector<int> like;    ///< per vertex: a face at it
-  std::vector<char> closed; ///< per vertex: its input component had no boundary
+  std::vector<char> tag;     ///< per face: 0 from A, 1 from B, 2 from the stitch
+  std::vector<char> seam;    ///< per vertex: made by the cut
+  std::vector<char> fixed;   ///< per vertex: of a kept face
+  std::vector<int> like;     ///< per vertex: a face at it
+  std::vector<char> closed;  ///< per vertex: its input component had no boundary
   std::vector<Loop> loops_a, loops_b;
 };
 

@@ -243,7 +243,8 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
     for (int k = 0; k < 3; ++k) {
       const int u = f[k], v = f[(k + 1) % 3];
       if (!close[u] && !close[v]) continue;
-      if (++sides[(long long)(std::min(u, v)) << 32 | std::max(u, v)] == 1) around[u].push_back(v), around[v].push_back(u);
+      if (++sides[(long long)(std::min(u, v)) << 32 | std::max(u, v)] == 1)
+        around[u].push_back(v), around[v].push_back(u);
     }
   std::vector<char> still = fixed;
   for (const auto& [edge, count] : sides)

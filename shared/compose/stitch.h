@@ -16,6 +16,13 @@ double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b);
 /// mesh, dressed as face like[v] of the nearest contour vertex v.
 void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like);
 
+/// Zippers contours piece by piece where they do not pair off one to one (two
+/// of a facing one of b): bridges between mutually nearest vertices, no longer
+/// than max_gap, part them into pieces, and facing pieces are zippered.
+/// @return the contours that are still open, of a's, b's and bridges' half-edges
+std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
+                                const std::vector<int>& like);
+
 /// Closes a contour with triangles between its own vertices, ear by ear, the
 /// best-shaped first.
 void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like);

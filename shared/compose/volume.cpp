@@ -71,7 +71,8 @@ Model make_model(const Part& part, const char* name) {
                     " is marked to be kept; select faces on it, or give a box or a point.");
   Model m{name, prepare(part.mesh), {}, {}};
   if (m.prepared.mesh.faces.empty())
-    throw UserError(quoted(name) + " has no usable face (all have non-finite or coinciding corners); clean the mesh first.");
+    throw UserError(quoted(name) +
+                    " has no usable face (all have non-finite or coinciding corners); clean the mesh first.");
   for (int f : m.prepared.source_face) m.keep.push_back(part.keep[f]);
   if (!any(m.keep))
     throw UserError("What is marked to be kept of model " + std::string(name) +
@@ -116,12 +117,14 @@ JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, 
       keep[f] = m.keep[f] && volume.intersects(m.prepared.mesh.face_box(int(f)));
     return keep;
   };
-  const VoxelSet set_a = rasterize(a.prepared.mesh, {}, grid, threads), set_b = rasterize(b.prepared.mesh, {}, grid, threads);
+  const VoxelSet set_a = rasterize(a.prepared.mesh, {}, grid, threads),
+                 set_b = rasterize(b.prepared.mesh, {}, grid, threads);
   const VoxelSet keep_a = rasterize(a.prepared.mesh, inside(a), grid, threads);
   const VoxelSet keep_b = rasterize(b.prepared.mesh, inside(b), grid, threads);
   for (const auto& [model, set, keep] : {std::tuple(&a, &set_a, &keep_a), std::tuple(&b, &set_b, &keep_b)}) {
     if (set->size() == 0)
-      throw UserError("The volume misses model " + std::string(model->name) + "; move the volume to where both models are.");
+      throw UserError("The volume misses model " + std::string(model->name) +
+                      "; move the volume to where both models are.");
     if (keep->size() == 0)
       throw UserError("What is to be kept of model " + std::string(model->name) +
                       " lies outside the volume; enlarge the volume or mark a part inside it.");
@@ -159,9 +162,12 @@ double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const 
     if (!(voxels.flags[n] & kHasA) || labels.label[n] != VoxelLabels::kA) continue;
     ++kept_a;
     const Eigen::Vector3f a = normal_a[n].normalized();
-    doubled += any_around(n, kNear, [&](int m) {
-      return (voxels.flags[m] & kHasB) && labels.label[m] == VoxelLabels::kB && a.dot(normal_b[m].normalized()) > 0.7f;
-    }) && !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
+    doubled += any_around(n, kNear,
+                          [&](int m) {
+                            return (voxels.flags[m] & kHasB) && labels.label[m] == VoxelLabels::kB &&
+                                   a.dot(normal_b[m].normalized()) > 0.7f;
+                          }) &&
+               !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
   }
   return double(doubled) / double(std::max(1L, std::min(kept_a, kept_b)));
 }

@@ -12,8 +12,8 @@ namespace parts {
 struct Model {
   const char* name;  ///< in sentences: "A" or "B"
   Prepared prepared;
-  std::vector<char> keep;   ///< per face: must survive
-  std::vector<int> piece;   ///< per face: number of its outer piece in JointVoxels, -1 inside the volume
+  std::vector<char> keep;  ///< per face: must survive
+  std::vector<int> piece;  ///< per face: number of its outer piece in JointVoxels, -1 inside the volume
 };
 
 /// Prepares a part. @throws UserError  no face, or no constraint

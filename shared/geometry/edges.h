@@ -28,9 +28,10 @@ inline std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
       edges[start[e.low() + 1]++] = e;
     }
   for (std::size_t v = 0; v + 1 < start.size(); ++v)
-    std::sort(edges.begin() + (v ? start[v] : 0), edges.begin() + start[v + 1], [](const HalfEdge& a, const HalfEdge& b) {
-      return a.high() != b.high() ? a.high() < b.high() : a.face < b.face;
-    });
+    std::sort(edges.begin() + (v ? start[v] : 0), edges.begin() + start[v + 1],
+              [](const HalfEdge& a, const HalfEdge& b) {
+                return a.high() != b.high() ? a.high() < b.high() : a.face < b.face;
+              });
   return edges;
 }
 

@@ -8,9 +8,7 @@
 
 namespace parts {
 
-inline int thread_count(int asked) {
-  return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
-}
+inline int thread_count(int asked) { return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency())); }
 
 /// Calls body(begin, end) over [0, n) cut into one contiguous band a thread.
 /// What the bands compute must not depend on where they are cut. An exception

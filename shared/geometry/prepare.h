@@ -8,13 +8,13 @@ namespace parts {
 /// A mesh made fit for cutting, and what had to be done to it.
 struct Prepared {
   Mesh mesh;
-  std::vector<int> source_face;    ///< per face: its index in the input
-  std::vector<int> component;      ///< per face: number of its edge-connected component
-  std::vector<char> closed;        ///< per component: no boundary edge
+  std::vector<int> source_face;  ///< per face: its index in the input
+  std::vector<int> component;    ///< per face: number of its edge-connected component
+  std::vector<char> closed;      ///< per component: no boundary edge
   int components = 0;
-  int welded_vertices = 0;         ///< vertices that lay exactly on another one
-  int dropped_faces = 0;           ///< with non-finite coordinates, a repeated vertex, or a repeated face
-  int reversed_faces = 0;          ///< turned to agree with their neighbours
+  int welded_vertices = 0;  ///< vertices that lay exactly on another one
+  int dropped_faces = 0;    ///< with non-finite coordinates, a repeated vertex, or a repeated face
+  int reversed_faces = 0;   ///< turned to agree with their neighbours
 };
 
 /// Welds vertices with bit-identical positions, drops faces that are none, and

@@ -33,9 +33,9 @@ class Progress {
   /// A view of this one for a step that covers [from, to] percent of it.
   Progress part(int from, int to) const {
     if (!report_) return Progress({}, log_);
-    return Progress([report = report_, from, to](int percent, const char* name) {
-      return report(from + percent * (to - from) / 100, name);
-    }, log_);
+    return Progress([report = report_, from, to](
+                        int percent, const char* name) { return report(from + percent * (to - from) / 100, name); },
+                    log_);
   }
   void log(const std::string& line) {
     if (log_) log_(line);

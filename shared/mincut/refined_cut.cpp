@@ -122,8 +122,7 @@ void for_each_link(const JointVoxels& voxels, const Places& places, const Nodes&
   });
   for (std::size_t k = 0; k < voxels.outer.size(); ++k)
     for (std::size_t v : voxels.outer[k].voxels)
-      if (const int i = places.set.node(v); places.shared[i])
-        visit(nodes.of_piece[k], false, nodes.of_place[i], true);
+      if (const int i = places.set.node(v); places.shared[i]) visit(nodes.of_piece[k], false, nodes.of_place[i], true);
 }
 
 /// The state of a refined cut while its sheets' sides are being settled.
@@ -189,11 +188,11 @@ class RefinedCut {
   int reach_;
   Places places_;
   Nodes nodes_;
-  std::vector<int> weight_;            ///< per place
-  std::vector<Sheet> sheet_;           ///< per node
-  std::vector<char> source_, sink_;    ///< per node: tied to a terminal
-  std::vector<char> reached_, seam_;   ///< per node, after solve()
-  std::vector<int> region_of_;         ///< per node
+  std::vector<int> weight_;           ///< per place
+  std::vector<Sheet> sheet_;          ///< per node
+  std::vector<char> source_, sink_;   ///< per node: tied to a terminal
+  std::vector<char> reached_, seam_;  ///< per node, after solve()
+  std::vector<int> region_of_;        ///< per node
   std::vector<Region> regions_;
 };
 

@@ -73,7 +73,7 @@ VoxelLabels thesis_cut(const JointVoxels& voxels) {
   // Ties go to B, which leaves the cut nearest to A's constraint.
   const auto label = [&](int node) {
     return std::int8_t(graph.what_segment(node, FlowGraph::SINK) == FlowGraph::SOURCE ? VoxelLabels::kA
-                                                                                       : VoxelLabels::kB);
+                                                                                      : VoxelLabels::kB);
   };
   for (int p = 0; p < n; ++p) cut.label.push_back(label(p));
   for (int j = 0; j < pieces; ++j) cut.outer.push_back(label(n + j));

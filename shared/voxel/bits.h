@@ -15,9 +15,7 @@ class VoxelSet {
   bool has(std::size_t v) const { return words_[v >> 6] >> (v & 63) & 1; }
   void add(std::size_t v) { words_[v >> 6] |= std::uint64_t(1) << (v & 63); }
   /// As add(), from several threads at once.
-  void add_shared(std::size_t v) {
-    __atomic_fetch_or(&words_[v >> 6], std::uint64_t(1) << (v & 63), __ATOMIC_RELAXED);
-  }
+  void add_shared(std::size_t v) { __atomic_fetch_or(&words_[v >> 6], std::uint64_t(1) << (v & 63), __ATOMIC_RELAXED); }
   VoxelSet& operator|=(const VoxelSet& other) {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
     return *this;

@@ -11,7 +11,8 @@ namespace parts {
 /// rounding never lets a surface slip between two voxels.
 class TriangleBoxTest {
  public:
-  TriangleBoxTest(const Vec3& a, const Vec3& b, const Vec3& c) : lo_(a.cwiseMin(b).cwiseMin(c)), hi_(a.cwiseMax(b).cwiseMax(c)) {
+  TriangleBoxTest(const Vec3& a, const Vec3& b, const Vec3& c)
+      : lo_(a.cwiseMin(b).cwiseMin(c)), hi_(a.cwiseMax(b).cwiseMax(c)) {
     const Vec3 edge[3] = {b - a, c - b, a - c};
     normal_ = edge[0].cross(edge[1]);
     int n = 0;
@@ -81,8 +82,9 @@ class TriangleBoxTest {
 /// Calls visit(voxel index) for every voxel of the grid that a triangle touches.
 template <class Visit>
 void for_each_voxel(const Grid& grid, const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) {
-  TriangleBoxTest(grid.to_grid(a), grid.to_grid(b), grid.to_grid(c))
-      .for_each_box(grid.dims, [&](int i, int j, int k) { visit(grid.index(i, j, k)); });
+  TriangleBoxTest(grid.to_grid(a), grid.to_grid(b), grid.to_grid(c)).for_each_box(grid.dims, [&](int i, int j, int k) {
+    visit(grid.index(i, j, k));
+  });
 }
 template <class Visit>
 void for_each_voxel(const Grid& grid, const Mesh& mesh, int face, const Visit& visit) {
