@@ -30,9 +30,10 @@ struct RefinedOptions {
 /// through which both borders pass, so the cost is the length of the seam, and
 /// sheets that only one model occupies cannot be cut at all (no amputations).
 /// A seam voxel costs more where the surfaces are at an angle, and at the rim of
-/// their overlap, less deep in it. Sheets that the seam cuts off from both
-/// constraints are dropped, so that where surfaces cross both lose a side.
-/// cost is the sum of the seam voxels' weights.
+/// their overlap, less deep in it. Where surfaces cross, directed arcs between
+/// their sheets see to it that both lose a side, or none. Sheets that the seam
+/// cuts off from both constraints are dropped.
+/// cost is the sum of the seam voxels' weights, and of arcs that had to be cut.
 /// @param normal_a, normal_b  per node, the summed unit normals of each model's faces in it
 VoxelLabels refined_cut(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
                         const std::vector<Eigen::Vector3f>& normal_b, const RefinedOptions& options);

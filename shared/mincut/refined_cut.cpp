@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <map>
+
 #include "geometry/disjoint_sets.h"
 #include "mincut/isolated.h"
 #include "mincut/labels.h"
@@ -71,10 +73,12 @@ Places find_places(const JointVoxels& voxels, int reach) {
   return p;
 }
 
-/// 64 for the best place to pass, more where the models differ.
+constexpr int kUnit = 64;  // capacity of the best voxel to pass
+
+/// kUnit for the best place to pass, more where the models differ.
 int seam_weight(const Places& places, int place, const std::vector<Eigen::Vector3f>& normal_a,
                 const std::vector<Eigen::Vector3f>& normal_b) {
-  double weight = 32.0 * (1.0 + 1.0 / (1 + places.depth[place]));
+  double weight = 0.5 * kUnit * (1.0 + 1.0 / (1 + places.depth[place]));
   const int v = places.voxel[place];
   if (v < 0) return int(weight);
   const Eigen::Vector3f &a = normal_a[v], &b = normal_b[v];
@@ -152,10 +156,10 @@ class RefinedCut {
       ++s.size;
       if (voxels_.outer[k].keep) (s.of_a ? source_ : sink_)[nodes_.of_piece[k]] = 1;
     }
+    tie_crossing_sheets(normal_a, normal_b);
   }
 
   void solve();
-  int settle_one_sided();
   VoxelLabels labels() const;
 
   double cost = 0;
@@ -181,6 +185,7 @@ class RefinedCut {
   };
 
   int flags(int place) const { return places_.voxel[place] < 0 ? 0 : voxels_.flags[places_.voxel[place]]; }
+  void tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_a, const std::vector<Eigen::Vector3f>& normal_b);
   void find_regions();
   const Region& region(int node) const { return regions_[region_of_[node]]; }
 
@@ -190,6 +195,7 @@ class RefinedCut {
   Nodes nodes_;
   std::vector<int> weight_;           ///< per place
   std::vector<Sheet> sheet_;          ///< per node
+  std::map<std::pair<int, int>, int> ties_;  ///< (sheet of A, of B) -> voxels that ask not to keep both, less those that do not
   std::vector<char> source_, sink_;   ///< per node: tied to a terminal
   std::vector<char> reached_, seam_;  ///< per node, after solve()
   std::vector<int> region_of_;        ///< per node
@@ -209,7 +215,9 @@ void RefinedCut::solve() {
     graph.add_edge(p + p_shared, q, kUncuttable, 0);
     graph.add_edge(q + q_shared, p, kUncuttable, 0);
   });
-  cost = double(graph.maxflow()) / 64.0;
+  for (const auto& [sheets, votes] : ties_)
+    if (votes > 0) graph.add_edge(sheets.first, sheets.second, 2 * kUnit * votes, 0);
+  cost = double(graph.maxflow()) / kUnit;
 
   // The seam: entry reached from the source, exit not.
   reached_.resize(nodes_.count);
@@ -252,43 +260,39 @@ void RefinedCut::find_regions() {
   }
 }
 
-/// Where surfaces cross, four sheets meet at the seam. If one model's sheets
-/// fall on both sides and the other's on one, only the first would be cut, and
-/// nothing would face its border. Ties the smallest free sheet of the uncut
-/// model to the other side. @return how many were tied
-int RefinedCut::settle_one_sided() {
-  constexpr int kVotes = 3;  // fewer voxels are noise
-  std::vector<int> votes(nodes_.count, 0);
-  int tied = 0;
+/// Where surfaces cross, four sheets meet: of each model one outside the other
+/// and one inside. What is kept must be both outer ones or both inner ones, or
+/// one model whole: otherwise a border would face none, or the surface would
+/// turn inside out across the seam. So keeping A's outer sheet asks to drop B's
+/// inner one, and keeping B's outer sheet asks to drop A's inner one: arcs from
+/// a sheet of A to one of B, which a minimal cut can honour.
+void RefinedCut::tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_a,
+                                     const std::vector<Eigen::Vector3f>& normal_b) {
+  const int reach = 3 + reach_;
+  std::vector<std::array<int, 2>> sheets[2];  // (sheet, outside?) around a voxel, of B and of A
   for (std::size_t i = 0; i < places_.cells.size(); ++i) {
-    if (!places_.shared[i] || !seam_[nodes_.of_place[i]]) continue;
+    const int v = places_.voxel[i];
+    if (v < 0 || !voxels_.both(v)) continue;
     const std::array<int, 3> c = voxels_.grid.cell(places_.cells[i]);
-    std::vector<int> around[2];  // sheets of B, of A
-    const int reach = 2 + reach_;
-    for (int z = c[2] - reach; z <= c[2] + reach; ++z)
-      for (int y = c[1] - reach; y <= c[1] + reach; ++y)
-        for (int x = c[0] - reach; x <= c[0] + reach; ++x) {
-          const int p = voxels_.grid.inside(x, y, z) ? places_.set.node(voxels_.grid.index(x, y, z)) : -1;
+    const Eigen::Vector3f normal[2] = {normal_a[v].normalized(), normal_b[v].normalized()};
+    sheets[0].clear(), sheets[1].clear();
+    for (int z = -reach; z <= reach; ++z)
+      for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+          if (!voxels_.grid.inside(c[0] + x, c[1] + y, c[2] + z)) continue;
+          const int p = places_.set.node(voxels_.grid.index(c[0] + x, c[1] + y, c[2] + z));
           if (p < 0 || places_.shared[p]) continue;
-          std::vector<int>& list = around[sheet_[nodes_.of_place[p]].of_a];
-          if (std::find(list.begin(), list.end(), nodes_.of_place[p]) == list.end()) list.push_back(nodes_.of_place[p]);
+          const bool of_a = sheet_[nodes_.of_place[p]].of_a;
+          const float height = Eigen::Vector3f(float(x), float(y), float(z)).dot(normal[of_a]);
+          if (std::abs(height) < 1) continue;  // about a voxel: neither side
+          const std::array<int, 2> found{nodes_.of_place[p], height > 0};
+          if (std::find(sheets[of_a].begin(), sheets[of_a].end(), found) == sheets[of_a].end())
+            sheets[of_a].push_back(found);
         }
-    const auto cut = [&](const std::vector<int>& sheets) {
-      for (int s : sheets)
-        if (region(s).label() != region(sheets[0]).label()) return true;
-      return false;
-    };
-    for (const int uncut : {0, 1}) {
-      if (!cut(around[1 - uncut]) || cut(around[uncut]) || around[uncut].size() < 2) continue;
-      int smallest = -1;
-      for (int s : around[uncut])
-        if (!source_[s] && !sink_[s] && (smallest < 0 || sheet_[s].size < sheet_[smallest].size)) smallest = s;
-      if (smallest >= 0) ++votes[smallest];
-    }
+    for (const auto& a : sheets[1])
+      for (const auto& b : sheets[0])
+        ties_[{a[0], b[0]}] += a[1] != b[1] ? 1 : -1;
   }
-  for (int node = 0; node < nodes_.count; ++node)
-    if (votes[node] >= kVotes) (region(node).label() == VoxelLabels::kA ? sink_ : source_)[node] = 1, ++tied;
-  return tied;
 }
 
 VoxelLabels RefinedCut::labels() const {
@@ -325,8 +329,6 @@ VoxelLabels refined_cut(const JointVoxels& voxels, const std::vector<Eigen::Vect
                         const std::vector<Eigen::Vector3f>& normal_b, const RefinedOptions& options) {
   RefinedCut cut(voxels, normal_a, normal_b, options.reach);
   cut.solve();
-  constexpr int kRounds = 12;  // each ties at least one more sheet; two or three do
-  for (int round = 0; round < kRounds && cut.settle_one_sided() > 0; ++round) cut.solve();
   return cut.labels();
 }
 
