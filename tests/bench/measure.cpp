@@ -132,9 +132,14 @@ std::string text(double value, int digits) {
   return out;
 }
 
+std::string count(double value) {
+  std::string s = std::to_string(std::lround(value));
+  for (int at = int(s.size()) - 3; at > 0; at -= 3) s.insert(at, ",");
+  return s;
+}
+
 std::string ratio(double value) { return text(value) + "×"; }
 std::string megabytes(double bytes) { return text(bytes / 1e6) + " MB"; }
 std::string verdict(bool good) { return good ? "yes" : "NO"; }
-std::string verdict(double value, double target) { return verdict(value <= target); }
 
 }  // namespace parts::bench

@@ -53,10 +53,10 @@ class Table {
   std::vector<std::string> notes_;
 };
 
-std::string text(double value, int digits = 3);    ///< that many significant digits
-std::string ratio(double value);                   ///< "12.3×"
-std::string megabytes(double bytes);               ///< "35 MB"
-std::string verdict(double value, double target);  ///< "yes" if value ≤ target, "NO (target ...)" if not
-std::string verdict(bool good);
+std::string text(double value, int digits = 3);  ///< that many significant digits
+std::string count(double value);                 ///< "12,345"
+std::string ratio(double value);                 ///< "12.3×"
+std::string megabytes(double bytes);             ///< "35 MB"
+std::string verdict(bool good);                  ///< "yes" or "NO"
 
 }  // namespace parts::bench

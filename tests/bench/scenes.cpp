@@ -140,8 +140,8 @@ Scene two_tubes(int faces) {
 Scene two_tori(int faces) {
   const int across = std::max(6, int(std::sqrt(faces / 6.0))), around = faces / across / 2;
   Mesh a = torus(1, 0.3, around, across), b = a;
-  for (Vec3& p : b.vertices) p = Vec3(p[1], p[2], p[0]);
-  move(b, {1.1, 0.1, 0.03});
+  for (Vec3& p : b.vertices) p = Vec3(p[1], p[2], p[0]);  // around y: its tube crosses a's
+  move(b, {2.0, 0.1, 0.03});
   return {"tori", part(std::move(a), true), part(std::move(b), false)};
 }
 
