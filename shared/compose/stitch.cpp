@@ -24,7 +24,16 @@ std::array<int, 2> nearest_pair(const Mesh& mesh, const std::vector<int>& a, con
 /// the path through the table of cross edges with the smallest sum of lengths.
 std::vector<char> shortest_strip(const Mesh& mesh, const std::vector<int>& a, const std::vector<int>& b) {
   const int m = int(a.size()), n = int(b.size());
-  const auto cross = [&](int i, int j) { return (mesh.vertices[a[i]] - mesh.vertices[b[j]]).norm(); };
+  // A strip that runs along one whole side before it moves on the other uses
+  // a cross edge twice; so do two strips that end at the same one.
+  const bool rings = a.front() == a.back() && b.front() == b.back();
+  const auto doubles = [&](int i, int j) {
+    if (!rings) return (i == 0 && j == n - 1) || (i == m - 1 && j == 0);
+    return (i == 0 && j > 1) || (j == 0 && i > 1) || (i == m - 1 && j < n - 2) || (j == n - 1 && i < m - 2);
+  };
+  const auto cross = [&](int i, int j) {
+    return (mesh.vertices[a[i]] - mesh.vertices[b[j]]).norm() + (doubles(i, j) ? 1e100 : 0);
+  };
   // Very long contours are searched near the diagonal only, to bound the table.
   constexpr long kTable = 40'000'000;
   const int half = long(m) * n <= kTable ? n : std::max<int>(64, int(kTable / m / 2));
