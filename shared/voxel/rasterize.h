@@ -22,8 +22,9 @@ class TriangleBoxTest {
         const double pa = axis.dot(a), pb = axis.dot(b), pc = axis.dot(c), r = kHalf * axis.cwiseAbs().sum();
         axis_[n] = axis, from_[n] = std::min({pa, pb, pc}) - r, to_[n] = std::max({pa, pb, pc}) + r, ++n;
       }
-    const double p = normal_.dot(a), r = kHalf * normal_.cwiseAbs().sum();
-    plane_from_ = p - r, plane_to_ = p + r;
+    // Of a needle the computed normal is noise, so all three corners have a say.
+    const double pa = normal_.dot(a), pb = normal_.dot(b), pc = normal_.dot(c), r = kHalf * normal_.cwiseAbs().sum();
+    plane_from_ = std::min({pa, pb, pc}) - r, plane_to_ = std::max({pa, pb, pc}) + r;
   }
 
   /// Calls visit(i, j, k) for every unit box in [0, dims) that the triangle
