@@ -74,8 +74,15 @@ function(add_meshlab_filter name)
   install(TARGETS ${name} LIBRARY DESTINATION "${MESHLAB_PLUGIN_DIR}")
 endfunction()
 
-# 'uninstall' removes what the last 'install' wrote.
-add_custom_target(uninstall
-  COMMAND "${CMAKE_COMMAND}" "-DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt"
-          -P "${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake"
-  COMMENT "Removing the installed plugins" VERBATIM)
+# add_uninstall_target(<plugin>...)
+# The target 'uninstall' takes the plugins out of the system's MeshLab, also
+# those that an earlier build put there.
+function(add_uninstall_target)
+  set(files ${ARGN})
+  list(TRANSFORM files REPLACE "(.+)" "${MESHLAB_PLUGIN_DIR}/$<TARGET_FILE_NAME:\\1>")
+  set(script "${PROJECT_BINARY_DIR}/uninstall.cmake")
+  file(GENERATE OUTPUT "${script}" CONTENT
+    "set(files \"${files}\")\ninclude(\"${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake\")\n")
+  add_custom_target(uninstall COMMAND "${CMAKE_COMMAND}" -P "${script}"
+    COMMENT "Removing the installed plugins" VERBATIM)
+endfunction()
