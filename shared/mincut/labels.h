@@ -19,6 +19,7 @@ struct VoxelLabels {
 /// Empty voxels can only break ties (all their edges together cost less than
 /// one other edge), so the graph is that of the non-empty voxels alone, with
 /// the lexicographic integers #I + 1 and 1 (#I: edges at intersection voxels).
+/// An outer piece is a node too; it parts from its voxels at intersections only.
 /// cost is the thesis' own sum over those edges.
 VoxelLabels thesis_cut(const JointVoxels& voxels);
 

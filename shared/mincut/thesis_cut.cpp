@@ -42,9 +42,10 @@ VoxelLabels thesis_cut(const JointVoxels& voxels) {
     ++edges;
     at_intersection += voxels.both(p) || voxels.both(q);
   });
-  const int boundary_weight = int(std::min<long>(at_intersection + 1, kUncuttable / 2));
   long piece_links = 0;
-  for (const OuterPiece& piece : voxels.outer) piece_links += long(piece.voxels.size());
+  for (const OuterPiece& piece : voxels.outer)
+    for (std::size_t v : piece.voxels) ++piece_links, at_intersection += voxels.both(voxels.set.node(v));
+  const int boundary_weight = int(std::min<long>(at_intersection + 1, kUncuttable / 2));
 
   FlowGraph graph(n + pieces, int(edges + piece_links));
   graph.add_node(n + pieces);
@@ -60,7 +61,10 @@ VoxelLabels thesis_cut(const JointVoxels& voxels) {
   for (int k = 0; k < pieces; ++k) {
     const OuterPiece& piece = voxels.outer[k];
     if (piece.keep) tie(n + k, piece.of_a, !piece.of_a);
-    for (std::size_t v : piece.voxels) graph.add_edge(n + k, voxels.set.node(v), kUncuttable, kUncuttable);
+    for (std::size_t v : piece.voxels) {
+      const int node = voxels.set.node(v), w = voxels.both(node) ? 1 : kUncuttable;
+      graph.add_edge(n + k, node, w, w);
+    }
   }
 
   VoxelLabels cut;
