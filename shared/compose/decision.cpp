@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "geometry/parallel.h"
+
 namespace parts {
 
 Decision decide(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
@@ -22,7 +24,10 @@ Decision decide(Model& a, Model& b, const Box& volume, int resolution, const Com
   if (options.cut == Cut::Thesis) {
     d.labels = thesis_cut(d.voxels);
   } else {
-    const auto normal_a = voxel_normals(a.prepared.mesh, d.voxels), normal_b = voxel_normals(b.prepared.mesh, d.voxels);
+    std::vector<Eigen::Vector3f> normal_a, normal_b;
+    parallel_for(2, options.threads, [&](long begin, long end) {
+      for (long m = begin; m < end; ++m) (m ? normal_b : normal_a) = voxel_normals((m ? b : a).prepared.mesh, d.voxels);
+    });
     // Where nearly coincident surfaces are some voxels apart, a cut that wants
     // them to meet runs wild: let it step over the gap, as far as it takes.
     constexpr int kFarthest = 3;

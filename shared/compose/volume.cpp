@@ -147,26 +147,49 @@ std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& 
 
 double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Eigen::Vector3f>& normal_a,
                     const std::vector<Eigen::Vector3f>& normal_b) {
-  constexpr int kNear = 3, kSeamZone = 5;
+  constexpr int kNear = 3, kSeamZone = 5, kBlock = 8;
+  const Grid& grid = voxels.grid;
   const auto any_around = [&](int node, int reach, const auto& test) {
-    const std::array<int, 3> c = voxels.grid.cell(voxels.cells[node]);
+    const std::array<int, 3> c = grid.cell(voxels.cells[node]);
     for (int k = -reach; k <= reach; ++k)
       for (int j = -reach; j <= reach; ++j)
         for (int i = -reach; i <= reach; ++i)
           if (const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k); m >= 0 && test(m)) return true;
     return false;
   };
+  const auto kept = [&](int n, int has, int label) { return (voxels.flags[n] & has) && labels.label[n] == label; };
+  // Most of A is far from all that is kept of B: blocks of voxels say so at once.
+  Grid blocks;
+  for (int d = 0; d < 3; ++d) blocks.dims[d] = (grid.dims[d] - 1) / kBlock + 1;
+  VoxelSet holds_b(blocks.count());
   long doubled = 0, kept_a = 0, kept_b = 0;
+  for (int n = 0; n < int(voxels.size()); ++n)
+    if (kept(n, kHasB, VoxelLabels::kB)) {
+      const std::array<int, 3> c = grid.cell(voxels.cells[n]);
+      holds_b.add(blocks.index(c[0] / kBlock, c[1] / kBlock, c[2] / kBlock));
+      ++kept_b;
+    }
+  const auto block_near = [&](int node) {
+    std::array<int, 3> lo, hi = grid.cell(voxels.cells[node]);
+    for (int d = 0; d < 3; ++d) {
+      lo[d] = std::max(0, hi[d] - kNear) / kBlock;
+      hi[d] = std::min(grid.dims[d] - 1, hi[d] + kNear) / kBlock;
+    }
+    for (int k = lo[2]; k <= hi[2]; ++k)
+      for (int j = lo[1]; j <= hi[1]; ++j)
+        for (int i = lo[0]; i <= hi[0]; ++i)
+          if (holds_b.has(blocks.index(i, j, k))) return true;
+    return false;
+  };
   for (int n = 0; n < int(voxels.size()); ++n) {
-    kept_b += (voxels.flags[n] & kHasB) && labels.label[n] == VoxelLabels::kB;
-    if (!(voxels.flags[n] & kHasA) || labels.label[n] != VoxelLabels::kA) continue;
+    if (!kept(n, kHasA, VoxelLabels::kA)) continue;
     ++kept_a;
+    if (!block_near(n)) continue;
     const Eigen::Vector3f a = normal_a[n].normalized();
-    doubled += any_around(n, kNear,
-                          [&](int m) {
-                            return (voxels.flags[m] & kHasB) && labels.label[m] == VoxelLabels::kB &&
-                                   a.dot(normal_b[m].normalized()) > 0.7f;
-                          }) &&
+    const auto parallel = [&](int m) {
+      return kept(m, kHasB, VoxelLabels::kB) && a.dot(normal_b[m].normalized()) > 0.7f;
+    };
+    doubled += any_around(n, kNear, parallel) &&
                !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
   }
   return double(doubled) / double(std::max(1L, std::min(kept_a, kept_b)));

@@ -15,12 +15,12 @@ class TriangleBoxTest {
       : lo_(a.cwiseMin(b).cwiseMin(c)), hi_(a.cwiseMax(b).cwiseMax(c)) {
     const Vec3 edge[3] = {b - a, c - b, a - c};
     normal_ = edge[0].cross(edge[1]);
-    int n = 0;
-    for (int e = 0; e < 3; ++e)
-      for (int d = 0; d < 3; ++d) {
-        const Vec3 axis = edge[e].cross(Vec3::Unit(d));
-        const double pa = axis.dot(a), pb = axis.dot(b), pc = axis.dot(c), r = kHalf * axis.cwiseAbs().sum();
-        axis_[n] = axis, from_[n] = std::min({pa, pb, pc}) - r, to_[n] = std::max({pa, pb, pc}) + r, ++n;
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) {
+        const int u = (d + 1) % 3, v = (d + 2) % 3;
+        const double cu = edge[e][v], cv = -edge[e][u], r = kHalf * (std::abs(cu) + std::abs(cv));
+        const double pa = cu * a[u] + cv * a[v], pb = cu * b[u] + cv * b[v], pc = cu * c[u] + cv * c[v];
+        axis_[d][e] = {cu, cv, std::min({pa, pb, pc}) - r, std::max({pa, pb, pc}) + r};
       }
     // Of a needle the computed normal is noise, so all three corners have a say.
     const double pa = normal_.dot(a), pb = normal_.dot(b), pc = normal_.dot(c), r = kHalf * normal_.cwiseAbs().sum();
@@ -41,25 +41,24 @@ class TriangleBoxTest {
     int w;  // the axis along which the triangle is flattest: few boxes a column
     normal_.cwiseAbs().maxCoeff(&w);
     const int u = (w + 1) % 3, v = (w + 2) % 3;
-    Vec3 center;
     for (int iv = from[v]; iv <= to[v]; ++iv)
       for (int iu = from[u]; iu <= to[u]; ++iu) {
-        center[u] = iu + 0.5, center[v] = iv + 0.5;
+        const double cu = iu + 0.5, cv = iv + 0.5;
+        if (separated(w, cu, cv)) continue;
         int w0 = from[w], w1 = to[w];
         if (normal_[w] != 0) {
-          const double part = normal_[u] * center[u] + normal_[v] * center[v];
+          const double part = normal_[u] * cu + normal_[v] * cv;
           double c0 = (plane_from_ - part) / normal_[w], c1 = (plane_to_ - part) / normal_[w];
           if (c0 > c1) std::swap(c0, c1);
           w0 = std::max(w0, int(std::ceil(std::max(c0 - 0.5 - kHair, -1.0))));
           w1 = std::min(w1, int(std::floor(std::min(c1 - 0.5 + kHair, 2e9))));
         }
         for (int iw = w0; iw <= w1; ++iw) {
-          center[w] = iw + 0.5;
-          if (!separated(center)) {
-            std::array<int, 3> c;
-            c[u] = iu, c[v] = iv, c[w] = iw;
-            visit(c[0], c[1], c[2]);
-          }
+          const double cw = iw + 0.5;
+          if (separated(u, cv, cw) || separated(v, cw, cu)) continue;
+          std::array<int, 3> c;
+          c[u] = iu, c[v] = iv, c[w] = iw;
+          visit(c[0], c[1], c[2]);
         }
       }
   }
@@ -67,17 +66,24 @@ class TriangleBoxTest {
  private:
   static constexpr double kHair = 1e-6, kHalf = 0.5 + kHair;
 
-  bool separated(const Vec3& center) const {
-    for (int n = 0; n < 9; ++n) {
-      const double p = axis_[n].dot(center);
-      if (p < from_[n] || p > to_[n]) return true;
+  /// An axis across coordinate axis d, as it has no part along it: that of an
+  /// edge crossed with d. In the two other coordinates, in cyclic order.
+  struct Axis {
+    double cu, cv, from, to;
+  };
+
+  /// Whether an axis across d parts the triangle from the box centred at (u, v).
+  bool separated(int d, double u, double v) const {
+    for (const Axis& a : axis_[d]) {
+      const double p = a.cu * u + a.cv * v;
+      if (p < a.from || p > a.to) return true;
     }
     return false;
   }
 
   Vec3 lo_, hi_, normal_;
-  Vec3 axis_[9];
-  double from_[9], to_[9], plane_from_, plane_to_;
+  Axis axis_[3][3];  ///< by coordinate axis, then by edge
+  double plane_from_, plane_to_;
 };
 
 /// Calls visit(voxel index) for every voxel of the grid that a triangle touches.
