@@ -146,7 +146,7 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   progress.stage("Smoothing the seam", 95, 100);
   ComposeResult result;
   result.report = best->report;
-  if (options.stitch) finish_seam(best->joined, best->report.voxel_size, options.smoothing);
+  if (options.stitch) finish_seam(best->joined, best->report.voxel_size, options.cut, options.smoothing);
   if (options.transition_surface) result.transition = transition_surface(best->decision.voxels, best->decision.labels);
   result.composed = std::move(best->joined.mesh);
   result.face_from_b = std::move(best->joined.tag);

@@ -13,7 +13,7 @@ Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipp
   append(j.mesh, cb.mesh);
   const int first_b = ca.mesh.vertex_count();
   j.seam = ca.cut_vertex;
-  j.seam.insert(j.seam.end(), cb.cut_vertex.begin(), cb.cut_vertex.end());
+  for (char cut : cb.cut_vertex) j.seam.push_back(cut ? kBorderB : kNoSeam);
   j.fixed.assign(j.mesh.vertices.size(), 0), j.closed = j.fixed;
   j.like.assign(j.mesh.vertices.size(), -1);
   for (int f = 0; f < j.mesh.face_count(); ++f) {
@@ -93,9 +93,13 @@ double stitch_parts(Joined& j, double max_gap, ComposeReport& report) {
   return unmatched;
 }
 
-void finish_seam(Joined& j, double voxel, const SeamSmoothing& smoothing) {
-  tidy_seam(j.mesh, j.seam, j.fixed, j.tag, 0.3 * voxel);
+void finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothing) {
+  if (cut == Cut::Refined)
+    tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
+  else
+    tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.2 * voxel, 0.2 * voxel});
   const std::vector<Vec3> before = j.mesh.vertices;
+  if (cut == Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
               smoothing.weight);
   if (j.mesh.vertex_normal.empty()) return;

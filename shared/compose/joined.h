@@ -12,7 +12,7 @@ namespace parts {
 struct Joined {
   Mesh mesh;
   std::vector<char> tag;     ///< per face: 0 from A, 1 from B, 2 from the stitch
-  std::vector<char> seam;    ///< per vertex: made by the cut
+  std::vector<char> seam;    ///< per vertex: SeamSide, made by the cut
   std::vector<char> fixed;   ///< per vertex: of a kept face
   std::vector<int> like;     ///< per vertex: a face at it
   std::vector<char> closed;  ///< per vertex: its input component had no boundary
@@ -28,7 +28,8 @@ Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipp
 /// borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, ComposeReport& report);
 
-/// Removes the seam's slivers, smooths it, and mends the normals around it.
-void finish_seam(Joined& joined, double voxel, const SeamSmoothing& smoothing);
+/// Removes the seam's slivers, evens it (Refined), smooths it, and mends the
+/// normals around it.
+void finish_seam(Joined& joined, double voxel, Cut cut, const SeamSmoothing& smoothing);
 
 }  // namespace parts

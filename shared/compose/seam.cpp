@@ -27,7 +27,7 @@ class SeamZone {
         if (zone[v]) star_[v].push_back(f);
   }
 
-  void collapse_short(double shortest);
+  void collapse_short(const SeamTidying& shortest);
   void flip_badly_shaped(int rounds);
   std::vector<char> alive() const {
     std::vector<char> a(dead_.size());
@@ -82,7 +82,8 @@ bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (p[k] - p[(k + 1) % 3]).squaredNorm());
     if (after.norm() < 0.02 * longest && after.norm() < before.norm()) return false;
-    if (before.norm() > 1e-3 * longest && after.dot(before) < 0.5 * after.norm() * before.norm()) return false;
+    // A sliver's own normal means nothing.
+    if (before.norm() > 0.1 * longest && after.dot(before) < 0.3 * after.norm() * before.norm()) return false;
   }
   return true;
 }
@@ -115,13 +116,15 @@ bool SeamZone::try_collapse(int gone, int stays, const Vec3& to) {
   return true;
 }
 
-void SeamZone::collapse_short(double shortest) {
+void SeamZone::collapse_short(const SeamTidying& shortest) {
   using Entry = std::pair<double, std::array<int, 2>>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto offer = [&](int u, int v) {
     if (!(seam_[u] || seam_[v]) || !star_.count(u) || !star_.count(v)) return;
     const double d = (mesh_.vertices[u] - mesh_.vertices[v]).norm();
-    if (d < shortest) queue.push({d, {std::min(u, v), std::max(u, v)}});
+    const bool across = (seam_[u] | seam_[v]) == (kBorderA | kBorderB) && seam_[u] != seam_[v];
+    const double most = across ? shortest.across : shortest.within;
+    if (d < most) queue.push({d / most, {std::min(u, v), std::max(u, v)}});
   };
   for (int f = 0; f < mesh_.face_count(); ++f) {
     const Triangle t = mesh_.faces[f];
@@ -129,11 +132,10 @@ void SeamZone::collapse_short(double shortest) {
       if (t[k] < t[(k + 1) % 3]) offer(t[k], t[(k + 1) % 3]);
   }
   while (!queue.empty()) {
-    const auto [d, e] = queue.top();
+    const std::array<int, 2> e = queue.top().second;
     queue.pop();
     int gone = e[0], stays = e[1];
-    if (!star_.count(gone) || !star_.count(stays)) continue;
-    if ((mesh_.vertices[gone] - mesh_.vertices[stays]).norm() != d) continue;
+    if (!star_.count(gone) || !star_.count(stays) || shared_faces(gone, stays).empty()) continue;
     // What the inputs had stays in place; of two new vertices both give way.
     if (fixed_[gone] || (!seam_[gone] && seam_[stays])) std::swap(gone, stays);
     if (fixed_[gone] || !seam_[gone]) continue;
@@ -193,7 +195,8 @@ void SeamZone::flip_badly_shaped(int rounds) {
       if (dead_[f]) continue;
       for (int k = 0; k < 3; ++k) {
         const int u = mesh_.faces[f][k], v = mesh_.faces[f][(k + 1) % 3];
-        if (u > v || !(seam_[u] || seam_[v]) || !star_.count(u) || !star_.count(v)) continue;
+        // An edge between seam vertices is the seam itself, often a crease: it stays.
+        if (u > v || !seam_[u] == !seam_[v] || !star_.count(u) || !star_.count(v)) continue;
         // Kept faces are the user's: none of them changes.
         bool kept = false;
         for (int s : shared_faces(u, v)) {
@@ -218,13 +221,41 @@ void compact(std::vector<T>& array, const std::vector<int>& indices) {
 
 }  // namespace
 
-void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, std::vector<char>& tag, double shortest) {
+void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, std::vector<char>& tag,
+               const SeamTidying& shortest) {
   SeamZone zone(mesh, seam, fixed);
   zone.collapse_short(shortest);
   zone.flip_badly_shaped(4);
   std::vector<int> old_vertex, old_face;
   mesh = take_faces(mesh, zone.alive(), &old_vertex, &old_face);
   compact(seam, old_vertex), compact(fixed, old_vertex), compact(tag, old_face);
+}
+
+void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, int iterations) {
+  constexpr char kOne = kBorderA | kBorderB;
+  std::unordered_map<int, std::vector<int>> along;
+  for (const Triangle& f : mesh.faces)
+    for (int k = 0; k < 3; ++k) {
+      const int u = f[k], v = f[(k + 1) % 3];
+      if (seam[u] == kOne && seam[v] == kOne) along[u].push_back(v);
+    }
+  std::vector<int> moving;
+  for (auto& [v, next] : along) {
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    if (next.size() == 2 && !fixed[v]) moving.push_back(v);
+  }
+  std::sort(moving.begin(), moving.end());
+  std::vector<Vec3> to(moving.size());
+  for (int round = 0; round < 2 * iterations; ++round) {
+    const double step = round % 2 ? -0.53 : 0.5;
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      const std::vector<int>& n = along[moving[i]];
+      const Vec3& x = mesh.vertices[moving[i]];
+      to[i] = x + step * (0.5 * (mesh.vertices[n[0]] + mesh.vertices[n[1]]) - x);
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i) mesh.vertices[moving[i]] = to[i];
+  }
 }
 
 void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
@@ -268,9 +299,14 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
   for (int round = 0; round < iterations; ++round) {
     for (std::size_t i = 0; i < moving.size(); ++i) {
       const int v = moving[i];
+      // Near neighbours count more, so that uneven triangles do not drag.
       Vec3 mean = Vec3::Zero();
-      for (int u : around[v]) mean += mesh.vertices[u];
-      mean /= double(around[v].size());
+      double weights = 0;
+      for (int u : around[v]) {
+        const double n = 1 / std::max((mesh.vertices[u] - mesh.vertices[v]).norm(), 1e-300);
+        mean += n * mesh.vertices[u], weights += n;
+      }
+      mean /= weights;
       const double w = weight * (distance > 0 ? 1 - away[v] / distance : 1);
       next[i] = mesh.vertices[v] + w * (mean - mesh.vertices[v]);
     }

@@ -193,10 +193,11 @@ class RefinedCut {
   int reach_;
   Places places_;
   Nodes nodes_;
-  std::vector<int> weight_;           ///< per place
-  std::vector<Sheet> sheet_;          ///< per node
-  std::map<std::pair<int, int>, int> ties_;  ///< (sheet of A, of B) -> voxels that ask not to keep both, less those that do not
-  std::vector<char> source_, sink_;   ///< per node: tied to a terminal
+  std::vector<int> weight_;   ///< per place
+  std::vector<Sheet> sheet_;  ///< per node
+  std::map<std::pair<int, int>, int>
+      ties_;                         ///< (sheet of A, of B) -> voxels that ask not to keep both, less those that do not
+  std::vector<char> source_, sink_;  ///< per node: tied to a terminal
   std::vector<char> reached_, seam_;  ///< per node, after solve()
   std::vector<int> region_of_;        ///< per node
   std::vector<Region> regions_;
@@ -290,8 +291,7 @@ void RefinedCut::tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_
             sheets[of_a].push_back(found);
         }
     for (const auto& a : sheets[1])
-      for (const auto& b : sheets[0])
-        ties_[{a[0], b[0]}] += a[1] != b[1] ? 1 : -1;
+      for (const auto& b : sheets[0]) ties_[{a[0], b[0]}] += a[1] != b[1] ? 1 : -1;
   }
 }
 
