@@ -45,11 +45,11 @@ Mesh parse_binary(std::string_view bytes, std::size_t faces) {
   mesh.faces.reserve(faces);
   for (std::size_t f = 0; f < faces; ++f) {
     const char* record = bytes.data() + kHeader + 4 + f * kRecord;
-    Eigen::Vector3f p[3];
+    Eigen::Matrix3f p;  // a corner a column
     std::uint16_t bits;
-    std::memcpy(p, record + 12, sizeof p);
+    std::memcpy(p.data(), record + 12, 9 * sizeof(float));
     std::memcpy(&bits, record + 48, sizeof bits);
-    mesh.faces.push_back({weld.vertex(p[0]), weld.vertex(p[1]), weld.vertex(p[2])});
+    mesh.faces.push_back({weld.vertex(p.col(0)), weld.vertex(p.col(1)), weld.vertex(p.col(2))});
     Color c{255, 255, 255, 255};
     if ((bits & 0x8000) ? !magics : magics) {
       for (int k = 0; k < 3; ++k) c[magics ? k : 2 - k] = std::uint8_t((bits >> (5 * k) & 31) * 255 / 31);

@@ -22,7 +22,8 @@ struct EdgeMap {
 EdgeMap edge_map(const Mesh& mesh);
 
 /// The borders of the surface as vertices in the faces' order, each once around
-/// a hole. A border that ends at a non-manifold edge is given as far as it goes.
+/// a hole. Where holes touch at a vertex a border follows the fan of faces that
+/// it bounds; one that ends at a non-manifold edge is given as far as it goes.
 std::vector<std::vector<int>> boundary_loops(const Mesh& mesh, const EdgeMap& map);
 
 /// What is wrong with a surface, counted.
