@@ -44,20 +44,20 @@ class ClosestSampleGrid : public ClosestPoint {
 /// 20k samples 0.6 us, but its distances end at the samples' spacing.
 class TriangleTree : public ClosestPoint {
  public:
-  /// @param surface  is kept by reference
   explicit TriangleTree(const Surface& surface);
   Closest closest(const Vec3& p, int& hint) const override;
 
  private:
   struct Node {
     Vec3 low, high;
-    int first = 0;  ///< a leaf's first place in order_; an inner node's first child
+    int first = 0;  ///< a leaf's first triangle; an inner node's first child
     int count = 0;  ///< triangles of a leaf; 0 = inner
   };
-  void build(int node, int begin, int end, std::vector<Vec3>& centers);
+  void build(int node, int begin, int end, const Surface& surface, const std::vector<Vec3>& centers,
+             std::vector<int>& order);
 
-  const Surface& surface_;
-  std::vector<int> order_;
+  std::vector<std::array<Vec3, 3>> triangles_;  ///< in the leaves' order
+  std::vector<Vec3> normals_;
   std::vector<Node> nodes_;
 };
 

@@ -8,7 +8,7 @@ namespace parts {
 namespace {
 
 constexpr int kSpreadRotations = 192;  // about 30 degrees from any rotation to the next of them
-constexpr int kPieces = 8;
+constexpr double kWhole = 0.85;        // a share above it counts as the whole
 
 /// A whole surface or a piece of it, to be laid on one of the other.
 struct Anchor {
@@ -33,12 +33,13 @@ Anchor piece_around(const Vec3& seed, const std::vector<Sample>& samples, double
   return {mean, principal_axes(covariance)};
 }
 
-/// Pieces of the given share, grown around seeds far from each other.
+/// Pieces of the given share, grown around seeds far from each other; enough to overlap well.
 std::vector<Anchor> pieces(const std::vector<Sample>& samples, double share) {
   std::vector<Anchor> found;
   std::vector<double> distance(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) distance[i] = samples[i].point.squaredNorm();
-  for (int k = 0; k < kPieces; ++k) {
+  const int count = std::clamp(int(std::ceil(6 / share)), 8, 48);
+  for (int k = 0; k < count; ++k) {
     const Vec3 seed = samples[std::max_element(distance.begin(), distance.end()) - distance.begin()].point;
     for (std::size_t i = 0; i < samples.size(); ++i)
       distance[i] = k == 0 ? (samples[i].point - seed).squaredNorm()
@@ -83,13 +84,9 @@ std::vector<Eigen::Matrix3d> axis_rotations() {
   return rotations;
 }
 
-std::vector<CoarsePose> coarse_poses(const std::vector<Sample>& moving, const Eigen::Matrix3d& moving_covariance,
-                                     const std::vector<Sample>& fixed, const Eigen::Matrix3d& fixed_covariance,
-                                     double area_ratio, double scale, double overlap, bool mirrored) {
-  const Anchor whole_moving{Vec3::Zero(), principal_axes(moving_covariance)};
-  const Anchor whole_fixed{Vec3::Zero(), principal_axes(fixed_covariance)};
+std::vector<CoarsePose> coarse_poses(const CoarseSurface& moving, const CoarseSurface& fixed, double scale,
+                                     double overlap) {
   static const std::vector<Eigen::Matrix3d> axis = axis_rotations(), spread = spread_rotations(kSpreadRotations);
-
   std::vector<CoarsePose> poses;
   const auto lay = [&](const Anchor& m, const Anchor& f, bool thesis) {
     const auto add = [&](const Eigen::Matrix3d& between, bool t) {
@@ -97,26 +94,27 @@ std::vector<CoarsePose> coarse_poses(const std::vector<Sample>& moving, const Ei
       p.rotation = f.axes * between * m.axes.transpose();
       p.scale = scale;
       p.translation = f.center - scale * (p.rotation * m.center);
-      p.mirrored = mirrored;
       poses.push_back({p, t});
     };
     for (const Eigen::Matrix3d& r : axis) add(r, thesis);
     for (const Eigen::Matrix3d& r : spread) add(r, false);
   };
+
+  const Anchor whole_moving{Vec3::Zero(), principal_axes(moving.covariance)};
+  const Anchor whole_fixed{Vec3::Zero(), principal_axes(fixed.covariance)};
   lay(whole_moving, whole_fixed, true);
-  lay({box_center(moving, whole_moving.axes), whole_moving.axes},
-      {box_center(fixed, whole_fixed.axes), whole_fixed.axes}, false);
+  lay({box_center(moving.samples, whole_moving.axes), whole_moving.axes},
+      {box_center(fixed.samples, whole_fixed.axes), whole_fixed.axes}, false);
 
   // The share of each surface that can match the other one.
-  const double moved_area = area_ratio * scale * scale;  // fixed area = 1
-  const double share_of_moving = std::min(overlap, 1 / moved_area);
-  const double share_of_fixed = std::min(1.0, overlap * moved_area);
-  const bool moving_whole = share_of_moving > 0.85, fixed_whole = share_of_fixed > 0.85;
-  const std::vector<Anchor> ms = moving_whole ? std::vector<Anchor>{whole_moving} : pieces(moving, share_of_moving);
-  const std::vector<Anchor> fs = fixed_whole ? std::vector<Anchor>{whole_fixed} : pieces(fixed, share_of_fixed);
-  if (!moving_whole || !fixed_whole)
-    for (const Anchor& m : ms)
-      for (const Anchor& f : fs) lay(m, f, false);
+  const double area_ratio = moving.area * scale * scale / fixed.area;
+  const double moving_share = std::min(overlap, 1 / area_ratio), fixed_share = std::min(1.0, overlap * area_ratio);
+  const auto anchors = [](const CoarseSurface& s, const Anchor& whole, double share) {
+    return share > kWhole ? std::vector<Anchor>{whole} : pieces(s.samples, share);
+  };
+  if (moving_share <= kWhole || fixed_share <= kWhole)
+    for (const Anchor& m : anchors(moving, whole_moving, moving_share))
+      for (const Anchor& f : anchors(fixed, whole_fixed, fixed_share)) lay(m, f, false);
   return poses;
 }
 

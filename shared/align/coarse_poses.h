@@ -14,16 +14,22 @@ struct CoarsePose {
   bool thesis = false;  ///< whole on whole by PCA, as in the thesis: never dropped unrefined
 };
 
+/// A surface as far as coarse poses look at it, in its own frame.
+struct CoarseSurface {
+  const std::vector<Sample>& samples;
+  Eigen::Matrix3d covariance;
+  double area;
+};
+
 /// Poses to start from. For the whole surfaces, and for the pieces of each that
 /// may be the matching part (where the areas or the overlap say that not all of
 /// it is): centroid on centroid, turned by the 24 rotations that take one set of
 /// principal axes to the other, and by rotations spread evenly, for parts
 /// whose axes PCA cannot tell or an overlap that bends them.
-/// @param samples  of each surface, in its own frame; of the moving one mirrored where `mirrored`
 /// @param scale    of the moving frame in the fixed one
-std::vector<CoarsePose> coarse_poses(const std::vector<Sample>& moving, const Eigen::Matrix3d& moving_covariance,
-                                     const std::vector<Sample>& fixed, const Eigen::Matrix3d& fixed_covariance,
-                                     double area_ratio, double scale, double overlap, bool mirrored);
+/// @param overlap  share of the moving surface that is expected to match
+std::vector<CoarsePose> coarse_poses(const CoarseSurface& moving, const CoarseSurface& fixed, double scale,
+                                     double overlap);
 
 /// count rotations spread evenly over all of them (super-Fibonacci spirals, Alexa 2022).
 std::vector<Eigen::Matrix3d> spread_rotations(int count);

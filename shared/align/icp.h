@@ -33,7 +33,7 @@ class PoseScore {
  private:
   friend class IcpLoop;
   struct Pair {
-    Vec3 moved;       ///< the sample, moved
+    Vec3 moved;  ///< the sample, moved
     Closest fixed;
     double agreement;  ///< cosine between the normals, whatever their signs
     double cost;       ///< squared distance and penalty

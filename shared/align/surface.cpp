@@ -97,8 +97,7 @@ std::vector<Sample> sample_surface(const Surface& surface, int count) {
   for (int k = 0; k < count; ++k) {
     double u[3];
     for (int d = 0; d < 3; ++d) u[d] = 0.5 + step[d] * (k + 1), u[d] -= std::floor(u[d]);
-    const auto at =
-        std::upper_bound(surface.area_up_to.begin(), surface.area_up_to.end() - 1, u[0] * surface.area());
+    const auto at = std::upper_bound(surface.area_up_to.begin(), surface.area_up_to.end() - 1, u[0] * surface.area());
     const auto f = at - surface.area_up_to.begin();
     const Corners& t = surface.triangles[f];
     const double root = std::sqrt(u[1]);  // uniform over the triangle

@@ -33,21 +33,27 @@ double squared_distance(const Vec3& low, const Vec3& high, const Vec3& p) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Surface& surface) : surface_(surface), order_(surface.triangles.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
+TriangleTree::TriangleTree(const Surface& surface) {
+  std::vector<int> order(surface.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
   std::vector<Vec3> centers;
-  centers.reserve(order_.size());
+  centers.reserve(order.size());
   for (const auto& t : surface.triangles) centers.push_back((t[0] + t[1] + t[2]) / 3);
-  nodes_.reserve(order_.size());
+  nodes_.reserve(order.size());
   nodes_.emplace_back();
-  build(0, 0, int(order_.size()), centers);
+  build(0, 0, int(order.size()), surface, centers, order);
+  for (int f : order) {
+    triangles_.push_back(surface.triangles[f]);
+    normals_.push_back(surface.normals[f]);
+  }
 }
 
-void TriangleTree::build(int node, int begin, int end, std::vector<Vec3>& centers) {
+void TriangleTree::build(int node, int begin, int end, const Surface& surface, const std::vector<Vec3>& centers,
+                         std::vector<int>& order) {
   Box box, center_box;
   for (int i = begin; i < end; ++i) {
-    for (const Vec3& v : surface_.triangles[order_[i]]) box.extend(v);
-    center_box.extend(centers[order_[i]]);
+    for (const Vec3& v : surface.triangles[order[i]]) box.extend(v);
+    center_box.extend(centers[order[i]]);
   }
   nodes_[node].low = box.min();
   nodes_[node].high = box.max();
@@ -59,19 +65,19 @@ void TriangleTree::build(int node, int begin, int end, std::vector<Vec3>& center
   int axis = 0;
   center_box.sizes().maxCoeff(&axis);
   const int middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
     return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
   });
   const int child = int(nodes_.size());
   nodes_.resize(child + 2);
   nodes_[node].first = child;
-  build(child, begin, middle, centers);
-  build(child + 1, middle, end, centers);
+  build(child, begin, middle, surface, centers, order);
+  build(child + 1, middle, end, surface, centers, order);
 }
 
 Closest TriangleTree::closest(const Vec3& p, int& hint) const {
   int best = hint;
-  Vec3 point = closest_on_triangle(surface_.triangles[best], p);
+  Vec3 point = closest_on_triangle(triangles_[best], p);
   double best_squared = (point - p).squaredNorm();
   struct Open {
     int node;
@@ -92,15 +98,14 @@ Closest TriangleTree::closest(const Vec3& p, int& hint) const {
       continue;
     }
     for (int i = n.first; i < n.first + n.count; ++i) {
-      const Vec3 q = closest_on_triangle(surface_.triangles[order_[i]], p);
+      const Vec3 q = closest_on_triangle(triangles_[i], p);
       const double squared = (q - p).squaredNorm();
       // Of triangles equally close the first one wins, whatever the hint was.
-      if (squared < best_squared || (squared == best_squared && order_[i] < best))
-        best_squared = squared, best = order_[i], point = q;
+      if (squared < best_squared || (squared == best_squared && i < best)) best_squared = squared, best = i, point = q;
     }
   }
   hint = best;
-  return {point, surface_.normals[best]};
+  return {point, normals_[best]};
 }
 
 }  // namespace parts
