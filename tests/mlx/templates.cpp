@@ -117,6 +117,6 @@ int main(int argc, char** argv) {
   for (const QString& name : orphans) std::cerr << qPrintable(name) << ": belongs to no filter\n";
   failures += orphans.size();
   std::cout << filters << " filters, " << failures << " differences\n";
-  if (failures) std::cerr << "The target 'templates' writes them anew.\n";
+  if (failures) std::cerr << "The target 'write_templates' writes them anew.\n";
   return failures ? 1 : 0;
 }
