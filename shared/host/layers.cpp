@@ -176,6 +176,7 @@ void write_layer(const Mesh& mesh, MeshModel& layer) {
   m.svn = int(vcg::tri::UpdateSelection<CMeshO>::VertexCount(m));
   m.sfn = int(vcg::tri::UpdateSelection<CMeshO>::FaceCount(m));
   layer.UpdateBoxAndNormals();
+  vcg::tri::UpdateNormal<CMeshO>::NormalizePerVertex(m);
   for (size_t i = 0; i < mesh.vertex_normal.size(); ++i) m.vert[i].N() = to_point(mesh.vertex_normal[i].cast<double>());
   layer.setMeshModified();
 }

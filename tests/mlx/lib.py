@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs .mlx scripts through the staged meshlabserver and checks what comes out.
 
-The environment names the build: PARTS_STAGE, the stage tree (build/stage).
+The environment (tests/run_script.sh) gives STAGE, the stage tree, a display
+and, as the current one, a folder to work in.
 """
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -18,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "data"))
 import shapes  # noqa: E402
 
-STAGE = pathlib.Path(os.environ.get("PARTS_STAGE", ROOT / "build" / "stage"))
+STAGE = pathlib.Path(os.environ.get("STAGE", ROOT / "build" / "stage"))
 SERVER = STAGE / "bin" / "meshlabserver"
 
 
@@ -101,13 +103,13 @@ def write_project(path, layers):
     path.write_text("\n".join(rows + [" </MeshGroup>", " <RasterGroup/>", "</MeshLabProject>"]) + "\n")
 
 
-def run(meshes, steps, outputs=None, matrices=None, timeout=120, environment=None, binary=True):
+def run(meshes, steps, outputs=None, matrices=None, timeout=120, environment=None):
     """Loads meshes (Mesh objects or files), runs the steps, saves layers.
 
     outputs: {name: layer index, or None for the current one}; the default
     saves the current layer as "out". matrices: of the layers, by index.
     """
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="mlx-"))
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="run-", dir=os.environ.get("WORK")))
     files = []
     for i, mesh in enumerate(meshes):
         if isinstance(mesh, shapes.Mesh):
@@ -128,12 +130,23 @@ def run(meshes, steps, outputs=None, matrices=None, timeout=120, environment=Non
     for name, layer in ({"out": None} if outputs is None else outputs).items():
         command += ["-o", str(folder / f"{name}.ply")] + ([] if layer is None else ["-l", str(layer)])
         command += ["-m", "vc", "vq", "vf", "ff", "wt"]
+    code, text, errors = execute(command, folder, timeout, environment or {})
+    return Run(code, text, errors, folder, len(steps))
+
+
+def execute(command, folder, timeout, environment):
+    """Exit code (None: it had to be stopped), standard output and error."""
     if "DISPLAY" not in os.environ:
-        command = ["xvfb-run", "-a"] + command
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=timeout, cwd=folder,
-                          env={**os.environ, **(environment or {})})
-    return Run(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"), folder,
-               len(steps))
+        command = [str(ROOT / "tools" / "headless")] + command
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True,
+                               errors="replace", env={**os.environ, **environment}, start_new_session=True)
+    try:
+        text, errors = process.communicate(timeout=timeout)
+        return process.returncode, text, errors
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        text, errors = process.communicate()
+        return None, text, errors
 
 
 def edge_counts(f):

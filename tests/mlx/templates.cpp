@@ -18,8 +18,7 @@ namespace {
 /// Attributes in a reader's order; QDomDocument's own order is random.
 QString to_line(const QDomElement& param) {
   QStringList names = {"type", "name", "value", "x", "y", "z", "min", "max", "enum_cardinality"};
-  for (int i = 0; i < param.attribute("enum_cardinality", "0").toInt(); ++i)
-    names << "enum_val" + QString::number(i);
+  for (int i = 0; i < param.attribute("enum_cardinality", "0").toInt(); ++i) names << "enum_val" + QString::number(i);
   const QDomNamedNodeMap attributes = param.attributes();
   for (const QString last : {"description", "tooltip"}) {
     QStringList rest;
