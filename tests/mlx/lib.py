@@ -103,13 +103,18 @@ def write_project(path, layers):
     path.write_text("\n".join(rows + [" </MeshGroup>", " <RasterGroup/>", "</MeshLabProject>"]) + "\n")
 
 
-def run(meshes, steps, outputs=None, matrices=None, timeout=120, environment=None):
+def work_folder():
+    return pathlib.Path(tempfile.mkdtemp(prefix="run-", dir=os.environ.get("WORK")))
+
+
+def run(meshes, steps, outputs=None, matrices=None, timeout=120, cores=None, memory=None):
     """Loads meshes (Mesh objects or files), runs the steps, saves layers.
 
     outputs: {name: layer index, or None for the current one}; the default
     saves the current layer as "out". matrices: of the layers, by index.
+    cores, memory (bytes of address space): the program gets no more.
     """
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="run-", dir=os.environ.get("WORK")))
+    folder = work_folder()
     files = []
     for i, mesh in enumerate(meshes):
         if isinstance(mesh, shapes.Mesh):
@@ -130,16 +135,20 @@ def run(meshes, steps, outputs=None, matrices=None, timeout=120, environment=Non
     for name, layer in ({"out": None} if outputs is None else outputs).items():
         command += ["-o", str(folder / f"{name}.ply")] + ([] if layer is None else ["-l", str(layer)])
         command += ["-m", "vc", "vq", "vf", "ff", "wt"]
-    code, text, errors = execute(command, folder, timeout, environment or {})
+    if cores:
+        command = ["taskset", "-c", f"0-{cores - 1}"] + command
+    if memory:
+        command = ["prlimit", f"--as={memory}"] + command
+    code, text, errors = execute(command, folder, timeout)
     return Run(code, text, errors, folder, len(steps))
 
 
-def execute(command, folder, timeout, environment):
+def execute(command, folder, timeout):
     """Exit code (None: it had to be stopped), standard output and error."""
     if "DISPLAY" not in os.environ:
         command = [str(ROOT / "tools" / "headless")] + command
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True,
-                               errors="replace", env={**os.environ, **environment}, start_new_session=True)
+                               errors="replace", start_new_session=True)
     try:
         text, errors = process.communicate(timeout=timeout)
         return process.returncode, text, errors
