@@ -127,8 +127,8 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   const bool clipped = inputs.flag("AddClippedLayers");
 
   Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
-  part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "A");
-  part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "B");
+  part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "model A");
+  part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
   ComposeResult result = compose(part_a, part_b, options, progress);
   log_report(result.report, result.composed, progress);
 

@@ -129,7 +129,7 @@ const Value& RichInputs::value(const char* name, bool (Value::*is)() const) cons
 double RichInputs::in_range(const char* name, double value) const {
   const Parameter& p = declaration(name);
   if (!std::isfinite(value)) throw UserError(p.name + " is not a number; give one.");
-  if (value >= p.min && value <= p.max) return value;
+  if (float(value) >= float(p.min) && float(value) <= float(p.max)) return value;  // the host has no doubles
   if (p.kind == Parameter::Kind::Choice)
     throw UserError(p.name + " has no value " + shown(value) + "; give one from 0 to " + shown(p.max) + ".");
   if (p.max >= std::numeric_limits<float>::max())

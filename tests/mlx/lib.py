@@ -229,6 +229,13 @@ def face_keys(v, f):
     return keys
 
 
+def welded(mesh):
+    """Vertices in the same place made one, faces without area dropped."""
+    v, index = np.unique(mesh.v, axis=0, return_inverse=True)
+    f = index.ravel()[mesh.f]
+    return shapes.Mesh(v, f[(f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])])
+
+
 def volume(mesh):
     a, b, c = (mesh.v[mesh.f[:, k]].astype(float) for k in range(3))
     return float((a * np.cross(b, c)).sum() / 6)
