@@ -50,12 +50,6 @@ void commit(const Outcome& outcome, MeshDocument& document) {
   if (outcome.current >= 0) document.setCurrentMesh(added[outcome.current]->id());
 }
 
-bool has_window() {
-  for (const QWidget* widget : QApplication::topLevelWidgets())
-    if (widget->isVisible()) return true;
-  return false;
-}
-
 }  // namespace
 
 Plugin::Plugin() : filters_(filters()) {
@@ -96,9 +90,6 @@ int Plugin::postCondition(QAction* action) const {
 }
 
 void Plugin::initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) {
-  // The dialog of the host crashes on a layer parameter without layers; with no
-  // parameter it runs the filter at once, and run() says what is missing.
-  if (document.meshList.isEmpty() && has_window()) return;
   declare(filter(action).parameters(scene_of(document)), document, list);
 }
 
@@ -114,7 +105,6 @@ bool Plugin::applyFilter(QAction* action, MeshDocument& document, const RichPara
 
 void Plugin::run(const Filter& filter, MeshDocument& document, const RichParameterList& list,
                  vcg::CallBackPos* callback) {
-  if (document.meshList.isEmpty()) throw UserError("There is no mesh; load one first.");
   const auto report = [callback](int percent, const char* stage) {
     // meshlabserver prints the stage as it is, the GUI shows it on one line.
     return !callback || callback(percent, (std::string(stage) + "\n").c_str());

@@ -86,14 +86,18 @@ TEST_F(HostPlugin, DefaultsDependOnTheDocument) {
   EXPECT_EQ(dynamic_cast<const RichAbsPerc&>(list.getParameterByName("Length")).max, 5) << "the diagonal";
 }
 
-TEST_F(HostPlugin, NoWindowNoLayerStillDeclaresParameters) {
+TEST_F(HostPlugin, ADocumentWithoutLayers) {
   MeshDocument empty;
   RichParameterList of_empty;
   plugin.initParameterSet(action(), empty, of_empty);
   EXPECT_EQ(of_empty.size(), list.size());
   EXPECT_EQ(dynamic_cast<const RichAbsPerc&>(of_empty.getParameterByName("Length")).max, 1);
+  next = [](const Inputs& in, Progress&) {
+    in.layer("A");
+    return Outcome();
+  };
   EXPECT_FALSE(plugin.applyFilter(action(), empty, of_empty, nullptr));
-  EXPECT_EQ(plugin.errorMsg(), "There is no mesh; load one first.");
+  EXPECT_EQ(plugin.errorMsg(), "There is no layer for A; load a mesh and choose it.");
 }
 
 TEST_F(HostPlugin, LayersAreAddedAndInputsHidden) {
