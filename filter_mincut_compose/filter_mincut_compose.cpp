@@ -164,7 +164,7 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
     log_report(results[i].report, results[i].composed, progress);
-    const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + "/" + count : "Deformed";
+    const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size()});
   }
   outcome.current = int(results.size()) - 1;

@@ -62,6 +62,7 @@ void read_vertices(const MeshModel& layer, const Placing& placing, Mesh& out, st
   const bool colors = layer.hasDataMask(MeshModel::MM_VERTCOLOR);
   const bool qualities = layer.hasDataMask(MeshModel::MM_VERTQUALITY);
   index.assign(m.vert.size(), -1);
+  out.vertices.reserve(m.vn), out.vertex_normal.reserve(m.vn);
   bool selected = false;
   for (size_t i = 0; i < m.vert.size(); ++i) {
     const CVertexO& v = m.vert[i];
@@ -96,6 +97,7 @@ void read_faces(const MeshModel& layer, const Placing& placing, const std::vecto
   const bool per_wedge = layer.hasDataMask(MeshModel::MM_WEDGTEXCOORD);
   const bool textured = per_wedge || layer.hasDataMask(MeshModel::MM_VERTTEXCOORD);
   bool selected = false;
+  out.faces.reserve(m.fn);
   for (const CFaceO& f : m.face) {
     if (f.IsD()) continue;
     Triangle t;
