@@ -28,7 +28,7 @@ from lib import box, template  # noqa: E402
 
 MEMORY = 16 << 30  # of address space: a runaway ends here, not in the machine's swap
 FINE = {"ok", "sentence"}
-Case = collections.namedtuple("Case", "filter input layers steps allowed closed result")
+Case = collections.namedtuple("Case", "filter input layers steps allowed closed result memory", defaults=[MEMORY])
 
 NAN, INF = float("nan"), float("inf")
 
@@ -194,6 +194,7 @@ def numbers():
                          ("the cut to come", dict(Cut="Mesh"))):
         yield compose(name, None, {"sentence"}, **values)
         yield deform(name, None, {"sentence"}, **values)
+    yield compose("resolution 1500 in 1.5 GB", None, FINE, Resolution=1500)._replace(memory=3 << 29)
     yield compose("keep number -1", None, {"sentence"}, KeepA=-1)
     yield compose("a thousand iterations over everything", None, {"ok"}, True, SmoothIterations=1000, SmoothDistance=1e9)
     for name, values in (("negative iterations", dict(MaxIterations=-1)), ("overlap 0", dict(Overlap=0)),
@@ -251,7 +252,7 @@ def checked(case, result):
 
 def outcome(case):
     saved = {"out": None, **{f"in{i}_after": i for i in range(len(case.layers))}}
-    result = lib.run(case.layers, case.steps, saved, timeout=60, memory=MEMORY)
+    result = lib.run(case.layers, case.steps, saved, timeout=60, memory=case.memory)
     if result.code is None:
         return "hang", ""
     started = "more meshes than you have loaded" not in result.text
