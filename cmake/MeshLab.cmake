@@ -55,14 +55,17 @@ endforeach()
 
 # add_meshlab_filter(<name> [<source>...])
 # A MeshLab filter plugin from the given sources, or from every .h and .cpp of
-# the calling folder. It is built into the stage tree and installed beside
-# MeshLab's own plugins. <name> is the folder's name.
+# the calling folder; they define parts::host::filters(). It is built into the
+# stage tree and installed beside MeshLab's own plugins. <name> is the folder's
+# name.
 function(add_meshlab_filter name)
   set(sources ${ARGN})
   if(NOT sources)
     file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/*.h")
   endif()
-  add_library(${name} MODULE ${sources})
+  set(host "${PROJECT_SOURCE_DIR}/shared/host")
+  set_property(GLOBAL APPEND PROPERTY PARTS_PLUGINS ${name})
+  add_library(${name} MODULE ${sources} "${host}/plugin.cpp" "${host}/plugin.h")
   target_link_libraries(${name} PRIVATE parts_host)
   set_target_properties(${name} PROPERTIES
     AUTOMOC ON

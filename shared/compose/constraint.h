@@ -14,7 +14,7 @@ enum class ConstraintBy { SelectedFaces, SelectedVertices, Box };
 /// One flag a face. Selected vertices mark the faces around them; a box marks
 /// the faces that it touches; a box with min = max is a point and marks the
 /// face nearest to it.
-/// @param model  the model's name in error sentences: "A", "B", "the fixed part"
+/// @param model  the model's name in error sentences: "model A", "the fixed part"
 /// @throws UserError  nothing is marked, or the box is inverted or not finite
 std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec3& box_min, const Vec3& box_max,
                                     const char* model);

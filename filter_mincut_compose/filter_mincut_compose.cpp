@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The filters of chapter 3.2 of the thesis: placing, composing and bending
+// models. Names, help, parameters, one call into the core, new layers.
+#include <sstream>
+
+#include "align/align.h"
+#include "compose/compose.h"
+#include "compose/constraint.h"
+#include "compose/deform.h"
+#include "geometry/error.h"
+#include "host/filter.h"
+#include "parameters.h"
+
+namespace parts {
+
+namespace {
+
+using host::Inputs;
+using host::Layer;
+using host::log_value;
+using host::Outcome;
+
+const char* reference =
+    "<br><br>See:<br><i>T. Hassner, L. Zelnik-Manor, G. Leifman, R. Basri</i><br>"
+    "<b>\"Minimal-cut model composition\"</b><br>Shape Modeling International 2005";
+
+Mesh surface_of(const Layer& layer) {
+  Mesh mesh = layer.mesh();
+  if (mesh.faces.empty())
+    throw UserError("The layer \"" + layer.name() + "\" has no faces; choose a layer that holds a surface.");
+  return mesh;
+}
+
+/// A value of ConstraintBy, then two points of a box.
+std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter, const Mesh& mesh, const char* model) {
+  return constrained_faces(mesh, ConstraintBy(inputs.choice(parameter.c_str())),
+                           inputs.point((parameter + "Min").c_str()), inputs.point((parameter + "Max").c_str()), model);
+}
+
+/// The options that Compose and Deform have in common.
+ComposeOptions cut_options(const Inputs& inputs) {
+  ComposeOptions options;
+  options.resolution = inputs.integer("Resolution");
+  switch (inputs.choice("Cut")) {
+    case 0:
+      options.cut = Cut::Refined;
+      break;
+    case 1:
+      options.cut = Cut::Thesis;
+      break;
+    default:
+      throw UserError("The cut \"Mesh\" is not available yet; choose Refined or Thesis.");
+  }
+  options.smoothing.iterations = inputs.integer("SmoothIterations");
+  options.smoothing.distance = inputs.length("SmoothDistance");
+  options.smoothing.weight = inputs.number("SmoothWeight");
+  return options;
+}
+
+Box volume_of(const Inputs& inputs) {
+  if (inputs.choice("Volume") == 0) return Box();
+  const Vec3 min = inputs.point("VolumeMin"), max = inputs.point("VolumeMax");
+  if (!((max - min).minCoeff() > 0))
+    throw UserError("The transition volume has no thickness; give a VolumeMax above VolumeMin in x, y and z.");
+  return Box(min, max);
+}
+
+void log_report(const ComposeReport& r, const Mesh& composed, Progress& progress) {
+  std::ostringstream grid;
+  grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
+  log_value(progress, "grid", grid.str());
+  log_value(progress, "voxel_size", r.voxel_size);
+  log_value(progress, "voxels_a", r.voxels_a);
+  log_value(progress, "voxels_b", r.voxels_b);
+  log_value(progress, "voxels_both", r.voxels_both);
+  log_value(progress, "cut_cost", r.cut_cost);
+  log_value(progress, "cut_seconds", r.cut_seconds);
+  log_value(progress, "seam_length", r.seam_length);
+  log_value(progress, "seam_gap", r.seam_gap);
+  log_value(progress, "loops_a", r.loops_a);
+  log_value(progress, "loops_b", r.loops_b);
+  log_value(progress, "loops_joined", r.loops_joined);
+  log_value(progress, "loops_capped", r.loops_capped);
+  log_value(progress, "loops_open", r.loops_open);
+  log_value(progress, "faces", composed.face_count());
+  log_value(progress, "seconds", r.seconds);
+}
+
+Outcome align(const Inputs& inputs, Progress& progress) {
+  const Layer moving = inputs.layer("MovingMesh"), fixed = inputs.layer("FixedMesh");
+  if (moving == fixed) throw UserError("MovingMesh and FixedMesh are the same layer; choose two different layers.");
+  AlignOptions options;
+  options.coarse = inputs.choice("Coarse") == 0;
+  options.allow_scale = inputs.flag("AllowScale");
+  options.allow_mirror = inputs.flag("AllowMirror");
+  options.max_iterations = inputs.integer("MaxIterations");
+  options.overlap = inputs.number("Overlap");
+  const bool to_vertices = inputs.choice("ApplyTo") == 1, selected = inputs.flag("OnlySelected");
+
+  const Mesh a = surface_of(moving), b = surface_of(fixed);
+  const std::vector<char> all;
+  const AlignResult result =
+      align_part_in_whole(a, selected ? a.face_selected : all, b, selected ? b.face_selected : all, options, progress);
+  std::ostringstream matrix;
+  matrix.precision(9);
+  for (int i = 0; i < 16; ++i) matrix << (i ? " " : "") << result.matrix(i / 4, i % 4);
+  log_value(progress, "matrix", matrix.str());
+  log_value(progress, "rms_before", result.rms_before);
+  log_value(progress, "rms_after", result.rms_after);
+  log_value(progress, "inlier_share", result.inlier_share);
+  log_value(progress, "iterations", result.iterations);
+  log_value(progress, "candidates", result.candidates);
+
+  Outcome outcome;
+  outcome.placed.push_back({moving, result.matrix, to_vertices});
+  return outcome;
+}
+
+Outcome compose_layers(const Inputs& inputs, Progress& progress) {
+  const Layer a = inputs.layer("MeshA"), b = inputs.layer("MeshB");
+  if (a == b)
+    throw UserError("MeshA and MeshB are the same layer; choose two different layers, or duplicate this one.");
+  ComposeOptions options = cut_options(inputs);
+  options.volume = volume_of(inputs);
+  options.stitch = inputs.flag("Stitch");
+  options.transition_surface = inputs.flag("AddTransitionSurface");
+  const bool clipped = inputs.flag("AddClippedLayers");
+
+  Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
+  part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "model A");
+  part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
+  ComposeResult result = compose(part_a, part_b, options, progress);
+  log_report(result.report, result.composed, progress);
+
+  Outcome outcome;
+  outcome.layers.push_back({"Composed", std::move(result.composed)});
+  outcome.current = 0;
+  if (clipped) outcome.layers.push_back({"Clipped A", std::move(result.clipped_a), false});
+  if (clipped) outcome.layers.push_back({"Clipped B", std::move(result.clipped_b), false});
+  if (options.transition_surface) outcome.layers.push_back({"Transition surface", std::move(result.transition), false});
+  outcome.hidden = {a, b};
+  return outcome;
+}
+
+Outcome deform_layer(const Inputs& inputs, Progress& progress) {
+  const Layer layer = inputs.layer("Mesh");
+  const ComposeOptions options = cut_options(inputs);
+  RigidPose pose;
+  pose.pivot = inputs.point("Pivot");
+  pose.axis = inputs.point("Axis");
+  pose.angle = inputs.number("Angle");
+  pose.translation = inputs.point("Translation");
+  pose.scale = inputs.number("Scale");
+  pose.mirror = inputs.flag("Mirror");
+  const int frames = inputs.integer("Frames");
+
+  const Mesh mesh = surface_of(layer);
+  const std::vector<char> fixed = kept_faces(inputs, "Fixed", mesh, "the fixed part");
+  const std::vector<char> moving = kept_faces(inputs, "Moving", mesh, "the moving part");
+  std::vector<ComposeResult> results = deform(mesh, fixed, moving, pose, frames, options, progress);
+
+  Outcome outcome;
+  const std::string count = std::to_string(results.size());
+  for (size_t i = 0; i < results.size(); ++i) {
+    if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
+    log_report(results[i].report, results[i].composed, progress);
+    const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
+    outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size()});
+  }
+  outcome.current = int(results.size()) - 1;
+  outcome.hidden = {layer};
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<host::Filter> host::filters() {
+  return {
+      {"Min-Cut: Align Part in Whole", "align_part_in_whole", Menu::Placement,
+       std::string("Places a model so that a part of it lies on the matching part of another: a human torso on a "
+                   "horse's neck, one head on another. Select the two matching parts (for instance with the face "
+                   "brush), one on each layer, or compare the models as wholes. The <b>moving</b> layer is brought "
+                   "onto the <b>fixed</b> one by a rigid motion, with a change of size or a reflection where you "
+                   "allow it: principal axes give first guesses, iterated closest points refine each, and the best "
+                   "match wins.") +
+           reference,
+       align_parameters, align},
+      {"Min-Cut: Compose Two Meshes", "compose", Menu::Remeshing,
+       std::string("Joins two overlapping models into one, without a visible seam. Place the models so that they "
+                   "overlap where they should be joined, and mark on each some faces that <b>must survive</b>. The "
+                   "filter finds where the two surfaces are closest (a minimal cut through their voxels), drops what "
+                   "lies on the wrong side, stitches the borders and smooths the seam. Faces away from the seam, their "
+                   "colours and their textures stay as they are. The marks belong to the surface: move a layer and "
+                   "run again without marking anew.") +
+           reference,
+       compose_parameters, compose_layers},
+      {"Min-Cut: Deform by Rigid Parts", "deform", Menu::Deformation,
+       std::string("Bends a model where it has joints: arms, necks, tails. Mark some faces that stay where they are "
+                   "and some that move (the upper arm and the hand); the moving ones are turned, shifted, scaled or "
+                   "mirrored about a pivot (the elbow), and a minimal cut finds where the moved model continues the "
+                   "unmoved one. Several frames make an animation, one layer each.") +
+           reference,
+       deform_parameters, deform_layer},
+  };
+}
+
+}  // namespace parts

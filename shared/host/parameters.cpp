@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host/parameters.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "geometry/error.h"
+#include "host/layers.h"
+
+namespace parts::host {
+
+namespace {
+
+MeshModel* current_of(const MeshDocument& document) {
+  if (document.mm()) return const_cast<MeshModel*>(document.mm());
+  return document.meshList.isEmpty() ? nullptr : document.meshList.first();
+}
+
+/// The first visible layer that is not the current one, or else a hidden one,
+/// or else the current one.
+MeshModel* other_of(const MeshDocument& document) {
+  MeshModel* other = current_of(document);
+  for (MeshModel* layer : document.meshList) {
+    if (layer == current_of(document)) continue;
+    if (layer->isVisible()) return layer;
+    if (other == current_of(document)) other = layer;
+  }
+  return other;
+}
+
+/// Diagonal of the visible layers: the 100 % of lengths. The host divides by it.
+double diagonal_of(const MeshDocument& document) {
+  Box box;
+  for (const MeshModel* layer : document.meshList)
+    if (layer->isVisible()) box.extend(layer_box(*layer));
+  const double diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
+  return diagonal > 0 && std::isfinite(float(diagonal)) ? diagonal : 1;
+}
+
+RichMesh layer_parameter(const Parameter& p, MeshModel* layer, MeshDocument& document, const QString& label,
+                         const QString& help) {
+  const QString name = QString::fromStdString(p.name);
+  if (layer) return RichMesh(name, layer, &document, label, help);
+  // The constructor asserts that a document's parameter has a layer.
+  RichMesh none(name, static_cast<MeshModel*>(nullptr), nullptr, label, help);
+  none.meshdoc = &document;
+  return none;
+}
+
+QStringList to_list(const std::vector<std::string>& values) {
+  QStringList list;
+  for (const std::string& value : values) list << QString::fromStdString(value);
+  return list;
+}
+
+std::string shown(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
+Scene scene_of(const MeshDocument& document) {
+  Scene scene;
+  MeshModel *current = current_of(document), *other = other_of(document);
+  if (current) scene.current = layer_box(*current);
+  if (other != current) scene.other = layer_box(*other);
+  return scene;
+}
+
+void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list) {
+  using Kind = Parameter::Kind;
+  for (const Parameter& p : parameters) {
+    const QString name = QString::fromStdString(p.name), label = QString::fromStdString(p.label),
+                  help = QString::fromStdString(p.help), text = QString::fromStdString(p.text);
+    switch (p.kind) {
+      case Kind::Flag:
+        list.addParam(RichBool(name, p.value != 0, label, help));
+        break;
+      case Kind::Integer:
+        list.addParam(RichInt(name, int(p.value), label, help));
+        break;
+      case Kind::Number:
+        list.addParam(RichFloat(name, float(p.value), label, help));
+        break;
+      case Kind::Length:
+        list.addParam(RichAbsPerc(name, float(p.value), 0, float(diagonal_of(document)), label, help));
+        break;
+      case Kind::Choice:
+        list.addParam(RichEnum(name, int(p.value), to_list(p.values), label, help));
+        break;
+      case Kind::Point:
+        list.addParam(RichPoint3f(name, vcg::Point3f(p.point.x(), p.point.y(), p.point.z()), label, help));
+        break;
+      case Kind::Text:
+        list.addParam(RichString(name, text, label, help));
+        break;
+      case Kind::OpenFile:
+        list.addParam(RichOpenFile(name, text, to_list(p.values), label, help));
+        break;
+      case Kind::SaveFile:
+        list.addParam(RichSaveFile(name, text, to_list(p.values).value(0), label, help));
+        break;
+      case Kind::CurrentLayer:
+        list.addParam(layer_parameter(p, current_of(document), document, label, help));
+        break;
+      case Kind::OtherLayer:
+        list.addParam(layer_parameter(p, other_of(document), document, label, help));
+        break;
+    }
+  }
+}
+
+const Parameter& RichInputs::declaration(const char* name) const {
+  for (const Parameter& p : parameters_)
+    if (p.name == name) return p;
+  throw std::logic_error(std::string("no parameter is called ") + name);
+}
+
+const Value& RichInputs::value(const char* name, bool (Value::*is)() const) const {
+  const Value& value = list_.getParameterByName(name).value();
+  if (!(value.*is)())  // the host would abort on reading it
+    throw UserError("The script gives " + std::string(name) + " as a Rich" + value.typeName().toStdString() +
+                    "; take its line from the filter's template in scripts/.");
+  return value;
+}
+
+double RichInputs::in_range(const char* name, double value) const {
+  const Parameter& p = declaration(name);
+  if (!std::isfinite(value)) throw UserError(p.name + " is not a number; give one.");
+  if (float(value) >= float(p.min) && float(value) <= float(p.max)) return value;  // the host has no doubles
+  if (p.kind == Parameter::Kind::Choice)
+    throw UserError(p.name + " has no value " + shown(value) + "; give one from 0 to " + shown(p.max) + ".");
+  if (p.max >= std::numeric_limits<float>::max())
+    throw UserError(p.name + " is " + shown(value) + "; give a value of at least " + shown(p.min) + ".");
+  throw UserError(p.name + " is " + shown(value) + "; give a value from " + shown(p.min) + " to " + shown(p.max) + ".");
+}
+
+bool RichInputs::flag(const char* name) const { return value(name, &Value::isBool).getBool(); }
+
+int RichInputs::integer(const char* name) const { return int(in_range(name, value(name, &Value::isInt).getInt())); }
+
+double RichInputs::number(const char* name) const { return in_range(name, value(name, &Value::isFloat).getFloat()); }
+
+double RichInputs::length(const char* name) const {
+  return in_range(name, value(name, &Value::isAbsPerc).getAbsPerc());
+}
+
+int RichInputs::choice(const char* name) const { return int(in_range(name, value(name, &Value::isEnum).getEnum())); }
+
+Vec3 RichInputs::point(const char* name) const {
+  const vcg::Point3f p = value(name, &Value::isPoint3f).getPoint3f();
+  const Vec3 point(p.X(), p.Y(), p.Z());
+  if (!point.allFinite()) throw UserError(std::string(name) + " is not a point; give three numbers.");
+  return point;
+}
+
+std::string RichInputs::text(const char* name) const {
+  return declaration(name).kind == Parameter::Kind::Text ? value(name, &Value::isString).getString().toStdString()
+                                                         : value(name, &Value::isFileName).getFileName().toStdString();
+}
+
+Layer RichInputs::layer(const char* name) const {
+  MeshModel* layer = value(name, &Value::isMesh).getMesh();
+  if (!layer || !document_.meshList.contains(layer))
+    throw UserError("There is no layer for " + std::string(name) + "; load a mesh and choose it.");
+  return Layer(layer);
+}
+
+}  // namespace parts::host

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <common/filter_parameter/rich_parameter_list.h>
+#include <common/meshmodel.h>
+
+#include "host/filter.h"
+
+namespace parts::host {
+
+/// Boxes of the layers that current_layer() and other_layer() propose.
+Scene scene_of(const MeshDocument& document);
+
+/// Adds the host's form of each parameter, with its default in this document.
+void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list);
+
+/// Reads the host's values through the declarations that made them.
+class RichInputs : public Inputs {
+ public:
+  RichInputs(std::vector<Parameter> parameters, const RichParameterList& list, const MeshDocument& document)
+      : parameters_(std::move(parameters)), list_(list), document_(document) {}
+  bool flag(const char* name) const override;
+  int integer(const char* name) const override;
+  double number(const char* name) const override;
+  double length(const char* name) const override;
+  int choice(const char* name) const override;
+  Vec3 point(const char* name) const override;
+  std::string text(const char* name) const override;
+  Layer layer(const char* name) const override;
+
+ private:
+  const Parameter& declaration(const char* name) const;
+  const Value& value(const char* name, bool (Value::*is)() const) const;
+  double in_range(const char* name, double value) const;
+
+  std::vector<Parameter> parameters_;
+  const RichParameterList& list_;
+  const MeshDocument& document_;
+};
+
+}  // namespace parts::host
