@@ -7,10 +7,14 @@
 #include <maxflow.h>
 
 #include <cstdint>
+#include <new>
 
 namespace parts {
 
-using FlowGraph = maxflow::Graph<int, std::int64_t, std::int64_t>;
+/// Throws std::bad_alloc where the library would end the program.
+struct FlowGraph : maxflow::Graph<int, std::int64_t, std::int64_t> {
+  FlowGraph(int nodes, int edges) : Graph(nodes, edges, [](const char*) { throw std::bad_alloc(); }) {}
+};
 constexpr std::int64_t kUncuttableTerminal = std::int64_t(1) << 60;
 constexpr int kUncuttable = 1 << 30;
 
