@@ -94,12 +94,19 @@ void relax(Mesh& mesh, const std::function<double(const Vec3&)>& field, double s
   }
 }
 
-/// Signed distance to a round cone, nearly.
+/// Signed distance to the hull of two balls (exact outside): the least, over the
+/// balls between them, of the distance to the ball.
 double distance(const Limb& l, const Vec3& p) {
   const Vec3 axis = l.to.center - l.from.center;
-  const double length = axis.squaredNorm();
-  const double t = length > 0 ? std::clamp((p - l.from.center).dot(axis) / length, 0., 1.) : 0;
-  return (p - l.from.center - t * axis).norm() - l.from.radius - t * (l.to.radius - l.from.radius);
+  const double length = axis.norm(), grow = l.to.radius - l.from.radius;
+  if (length <= std::abs(grow)) {  // one ball holds the other
+    const Ball& larger = grow > 0 ? l.to : l.from;
+    return (p - larger.center).norm() - larger.radius;
+  }
+  const double slope = grow / length, along = (p - l.from.center).dot(axis) / length;
+  const double away = (p - l.from.center - along / length * axis).norm();
+  const double t = std::clamp((along + away * slope / std::sqrt(1 - slope * slope)) / length, 0., 1.);
+  return (p - l.from.center - t * axis).norm() - l.from.radius - t * grow;
 }
 
 /// Each limb on both sides of the plane x = 0.
@@ -139,7 +146,8 @@ Mesh blend(const std::vector<Limb>& limbs, double softness, int cells) {
     double d[64];
     const int n = std::min(64, int(limbs.size()));
     for (int i = 0; i < n; ++i) nearest = std::min(nearest, d[i] = distance(limbs[i], p));
-    for (int i = 0; i < n; ++i) sum += std::exp((nearest - d[i]) / softness);
+    for (int i = 0; i < n; ++i)
+      if (d[i] - nearest < 20 * softness) sum += std::exp((nearest - d[i]) / softness);
     return nearest - softness * std::log(sum);
   };
   return isosurface(field, box, cells);
@@ -196,16 +204,16 @@ Mesh bust(unsigned seed, int cells) {
 
 Mesh bush(unsigned seed, int cells) {
   Random random(seed);
-  std::vector<Limb> limbs{{{{0, 0, 0}, 0.45}, {{0, 0, 0}, 0.45}}};
-  for (int i = 0; i < 24; ++i) {
-    const Ball ball{random.direction() * random.uniform(0.4, 0.6), random.uniform(0.15, 0.28)};
+  std::vector<Limb> limbs{{{{0, 0, 0}, 0.5}, {{0, 0, 0}, 0.5}}};
+  for (int i = 0; i < 36; ++i) {
+    const Ball ball{random.direction() * random.uniform(0.45, 0.65), random.uniform(0.13, 0.2)};
     limbs.push_back({ball, ball});
   }
-  return blend(limbs, 0.02, cells);
+  return blend(limbs, 0.03, cells);
 }
 
 Mesh glasses(int cells) {
-  constexpr int kParts = 14;
+  constexpr int kParts = 24;
   std::vector<Limb> half;
   for (int i = 0; i < kParts; ++i) {
     const auto rim = [&](int k) {
@@ -217,7 +225,7 @@ Mesh glasses(int cells) {
   half.push_back({{{0.06, 0.03, 0}, 0.022}, {{0, 0.05, 0.01}, 0.022}});
   half.push_back({{{0.38, 0.03, 0}, 0.022}, {{0.4, 0.03, -0.45}, 0.018}});
   half.push_back({{{0.4, 0.03, -0.45}, 0.018}, {{0.39, -0.06, -0.55}, 0.018}});
-  return blend(mirrored(half), 0.006, cells);
+  return blend(mirrored(half), 0.002, cells);
 }
 
 Mesh hat(int around) {
