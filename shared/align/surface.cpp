@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "geometry/error.h"
@@ -18,17 +19,17 @@ double triangle_area(const Corners& t) { return 0.5 * (t[1] - t[0]).cross(t[2] -
 std::vector<Corners> emphasised(const Mesh& mesh, const std::vector<char>& flags, const std::string& model) {
   if (mesh.faces.empty())
     throw UserError("The " + model + " model has no faces: choose a layer that holds a triangle mesh.");
+  if (!flags.empty() && flags.size() != mesh.faces.size()) throw std::invalid_argument("one flag a face");
+  const bool all = std::find(flags.begin(), flags.end(), 1) == flags.end();
   std::vector<Corners> corners;
   for (int f = 0; f < mesh.face_count(); ++f) {
-    if (!flags.empty() && !flags[f]) continue;
+    if (!all && !flags[f]) continue;
     corners.push_back({mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)});
     for (const Vec3& v : corners.back())
       if (!v.allFinite())
         throw UserError("The " + model +
                         " part has a coordinate that is not a number: remove such vertices, then align again.");
   }
-  if (corners.empty())
-    throw UserError("No face of the " + model + " model is emphasised: select faces on it, or clear its selection.");
   return corners;
 }
 

@@ -28,9 +28,9 @@ struct Surface {
   double area() const { return area_up_to.back(); }
 };
 
-/// @param flags  1 = emphasised; empty = every face
+/// @param flags  1 = emphasised; none = every face
 /// @param model  the model's name in error sentences: "moving", "fixed"
-/// @throws UserError  no face, no flagged face, a non-finite coordinate, no area
+/// @throws UserError  no face, a non-finite coordinate, no area
 Surface make_surface(const Mesh& mesh, const std::vector<char>& flags, const char* model);
 
 /// count points, uniform over the area, always the same. Every prefix is
