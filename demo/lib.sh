@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
 # For the scripts demo/NAME, which './run demo NAME' starts in the empty folder
-# $OUT with ROOT (the checkout), STAGE (the stage tree) and SCRIPTS (the .mlx
+# $OUT with ROOT (the checkout), BUILD, STAGE (the stage tree) and SCRIPTS (the .mlx
 # templates) set. A demo starts with
 #   # demo: what it makes, in a line
 #   source "$ROOT/demo/lib.sh"
@@ -35,3 +35,16 @@ finish() {
   local file
   for file; do say "  $(realpath "$file")"; done
 }
+
+# mlx STEP NAME=VALUE... + STEP ... >script.mlx   see tools/mlx
+mlx() { "$ROOT/tools/mlx" "$@"; }
+
+# place IN OUT X Y Z   the mesh IN with new coordinates, formulas in x, y and z
+place() {
+  mlx "Per Vertex Geometric Function" "RichString:x=$3" "RichString:y=$4" "RichString:z=$5" \
+    RichBool:onselected=false >place.mlx
+  meshlabserver -i "$1" -s place.mlx -o "$2"
+}
+
+# picture OUT MESH...   see tools/picture.cpp
+picture() { "$BUILD/tools/picture" "$@"; }
