@@ -7,14 +7,9 @@ import numpy as np
 from shapes import Mesh, merged, sphere
 
 
-def per_face(m):
-    """The faces' selection and the rest follow the mesh; a shallow copy is enough."""
-    return copy.copy(m)
-
-
 def with_faces(m, f, index=None):
     """Other faces; index: of the old face that each of them continues."""
-    out = per_face(m)
+    out = copy.copy(m)
     out.f = np.asarray(f).reshape(-1, 3)
     if m.face_selected is not None:
         index = np.minimum(np.arange(len(out.f)), len(m.f) - 1) if index is None else index
@@ -38,7 +33,7 @@ def several_components(m):
 
 def duplicate_vertices(m):
     """Every face has corners of its own, as STL files have them."""
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = m.v[m.f].reshape(-1, 3)
     out.f = np.arange(len(out.v)).reshape(-1, 3)
     if m.vertex_selected is not None:
@@ -57,7 +52,7 @@ def zero_area_faces(m):
 
 def non_manifold_edges(m):
     """A fin on every eleventh face."""
-    out = per_face(m)
+    out = copy.copy(m)
     f = m.f[::11]
     tips = m.v[f].mean(axis=1) * 1.05
     out.v = np.concatenate([m.v, tips])
@@ -93,14 +88,14 @@ def holes(m):
 
 
 def nan_coordinates(m):
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = out.v.astype(float)
     out.v[::97] = np.nan
     return out
 
 
 def infinite_coordinates(m):
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = out.v.astype(float)
     out.v[5] = np.inf
     return out
@@ -108,7 +103,7 @@ def infinite_coordinates(m):
 
 def loose_vertices(m):
     """Vertices without faces, far away."""
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = np.concatenate([m.v, m.v[:5] + 1000])
     if m.vertex_selected is not None:
         out.vertex_selected = np.concatenate([m.vertex_selected, np.ones(5, bool)])
@@ -129,14 +124,14 @@ def one_face(m):
 
 def flat(m):
     """Pressed into the plane z = 0."""
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = out.v * [1, 1, 0]
     return out
 
 
 def collapsed(m):
     """Every vertex in one place."""
-    out = per_face(m)
+    out = copy.copy(m)
     out.v = np.zeros_like(out.v, float)
     return out
 

@@ -4,7 +4,7 @@ import numpy as np
 
 import lib
 import shapes
-from lib import current, run, select_faces, template
+from lib import current, run, template
 
 
 def bone(size=1.0):
