@@ -147,7 +147,9 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   ComposeResult result;
   result.report = best->report;
   if (options.stitch) finish_seam(best->joined, best->report.voxel_size, options.cut, options.smoothing);
-  if (options.transition_surface) result.transition = transition_surface(best->decision.voxels, best->decision.labels);
+  if (options.transition_surface)
+    result.transition =
+        transition_surface(best->decision.voxels, best->decision.labels, options.cut == Cut::Thesis ? 0 : 6);
   result.composed = std::move(best->joined.mesh);
   result.face_from_b = std::move(best->joined.tag);
   result.clipped_a = std::move(best->a.mesh), result.clipped_b = std::move(best->b.mesh);

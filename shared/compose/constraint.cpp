@@ -48,8 +48,7 @@ void mark_touching(const Mesh& mesh, const Box& box, std::vector<char>& keep) {
 std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec3& box_min, const Vec3& box_max,
                                     const char* model) {
   const std::string of = std::string(" of ") + model;
-  if (mesh.faces.empty())
-    throw UserError("No face" + of + " exists; choose a layer that holds a triangle mesh.");
+  if (mesh.faces.empty()) throw UserError("No face" + of + " exists; choose a layer that holds a triangle mesh.");
   std::vector<char> keep(mesh.faces.size(), 0);
   if (by == ConstraintBy::SelectedFaces) {
     if (!mesh.face_selected.empty()) keep = mesh.face_selected;

@@ -95,7 +95,8 @@ Box transition_volume(const Model& a, const Model& b, const Box& asked) {
     if (!asked.intersects(*box))
       throw UserError("The volume misses model " + std::string(model->name) +
                       "; move the volume to where both models are.");
-  return asked;
+  // No more than there is to cut, or the voxels would be too large.
+  return asked.intersection(box_a.merged(box_b));
 }
 
 int natural_resolution(const Model& a, const Model& b, const Box& volume) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -22,14 +23,19 @@ void parallel_for(long n, int threads, const Body& body) {
   }
   std::vector<std::exception_ptr> failed(bands);
   std::vector<std::thread> pool;
-  for (long t = 0; t < bands; ++t)
-    pool.emplace_back([&, t] {
-      try {
-        body(n * t / bands, n * (t + 1) / bands);
-      } catch (...) {
-        failed[t] = std::current_exception();
-      }
-    });
+  const auto run = [&](long t) {
+    try {
+      body(n * t / bands, n * (t + 1) / bands);
+    } catch (...) {
+      failed[t] = std::current_exception();
+    }
+  };
+  for (long t = 1; t < bands; ++t) try {
+      pool.emplace_back(run, t);
+    } catch (const std::system_error&) {
+      run(t);  // no more threads to be had
+    }
+  run(0);
   for (std::thread& t : pool) t.join();
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);
