@@ -11,6 +11,7 @@
 #include "compose/transition.h"
 #include "compose/transition_surface.h"
 #include "compose/volume.h"
+#include "geometry/attributes.h"
 #include "voxel/rasterize.h"
 
 namespace parts {
@@ -132,6 +133,17 @@ void log_notes(const Model& m, Progress& progress) {
   say("reversed_faces", m.prepared.reversed_faces);
 }
 
+/// Six times the volume that the closed components enclose, negative if they
+/// are inside out; 0 if none is closed.
+double enclosed(const Prepared& p) {
+  const Vec3 origin = p.mesh.bounds().center();
+  double sum = 0;
+  for (int f = 0; f < p.mesh.face_count(); ++f)
+    if (p.closed[p.component[f]])
+      sum += (p.mesh.corner(f, 0) - origin).dot((p.mesh.corner(f, 1) - origin).cross(p.mesh.corner(f, 2) - origin));
+  return sum;
+}
+
 }  // namespace
 
 ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptions& options, Progress& progress) {
@@ -141,11 +153,14 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   Model a = make_model(part_a, "A"), b = make_model(part_b, "B");
   log_notes(a, progress), log_notes(b, progress);
   const Box volume = transition_volume(a, b, options.volume);
+  const bool turned = enclosed(a.prepared) * enclosed(b.prepared) < 0;
+  if (turned) flip_orientation(b.prepared.mesh);
 
   const std::unique_ptr<Attempt> best = best_attempt(a, b, volume, options, progress);
   progress.stage("Smoothing the seam", 95, 100);
   ComposeResult result;
   result.report = best->report;
+  result.report.reversed_b = best->report.reversed_b != turned;
   if (options.stitch) finish_seam(best->joined, best->report.voxel_size, options.cut, options.smoothing);
   if (options.transition_surface)
     result.transition =

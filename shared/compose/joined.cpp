@@ -46,11 +46,15 @@ bool agree_on_orientation(Joined& j, std::vector<std::array<int, 2>>& pairs) {
   }
   const bool turn = balance > 0.5 * length;
   if (turn) {
+    std::vector<char> of_b(j.mesh.vertices.size(), 0);
     for (int f = 0; f < j.mesh.face_count(); ++f)
       if (j.tag[f] == 1) {
+        for (int v : j.mesh.faces[f]) of_b[v] = 1;
         std::swap(j.mesh.faces[f][1], j.mesh.faces[f][2]);
         if (!j.mesh.wedges.empty()) std::swap(j.mesh.wedges[f].uv[1], j.mesh.wedges[f].uv[2]);
       }
+    for (std::size_t v = 0; v < j.mesh.vertex_normal.size(); ++v)
+      if (of_b[v]) j.mesh.vertex_normal[v] = -j.mesh.vertex_normal[v];
     for (Loop& l : j.loops_b) std::reverse(l.vertices.begin(), l.vertices.end());
   }
   // What still runs the wrong way would make a twisted strip.
