@@ -43,9 +43,9 @@ Clipped clip_model(const Model& model, bool of_a, const Decision& d, const Trans
   ClipField field;
   const double sign = of_a ? 1 : -1;
   field.value = [&transition, sign, of_a](const Vec3& p) { return sign * transition.value(p, of_a); };
-  field.crosses = [&transition, &grid](const Mesh& m, int f) {
+  field.crosses = [&transition, &grid, of_a](const Mesh& m, int f) {
     bool near = false;
-    for_each_voxel(grid, m, f, [&](std::size_t v) { near |= transition.near(v); });
+    for_each_voxel(grid, m, f, [&](std::size_t v) { near |= transition.near(v, of_a); });
     return near;
   };
   field.max_edge = grid.size * (cut == Cut::Thesis ? 0.5 : 1.0);

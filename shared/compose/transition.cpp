@@ -153,18 +153,21 @@ double Transition::value(const Vec3& p, bool of_a) const {
 
 void Transition::mark_near() {
   const Grid& grid = voxels_->grid;
-  near_ = VoxelSet(grid.count());
   const VoxelSet& set = band_.size() ? band_ : voxels_->set;
-  set.for_each([&](std::size_t v) {
-    bool positive = false, negative = false;
-    for_each_neighbour(grid, v, 1, [&](std::size_t u) {
-      const int p = band_.node(u), n = p >= 0 ? -1 : voxels_->set.node(u);
-      const double x = p >= 0 ? value_[p] : n >= 0 ? labels_->label[n] : 0;
-      positive |= x > 0, negative |= x < 0;
+  for (const bool of_a : {false, true}) {
+    near_[of_a] = VoxelSet(grid.count());
+    set.for_each([&](std::size_t v) {
+      bool positive = false, negative = false, known = false;
+      const std::array<int, 3> c = grid.cell(v);
+      for (int k = -1; k <= 1; ++k)
+        for (int j = -1; j <= 1; ++j)
+          for (int i = -1; i <= 1; ++i) {
+            const double x = at(c[0] + i, c[1] + j, c[2] + k, of_a, known);
+            positive |= known && x > 0, negative |= known && x < 0;
+          }
+      if (positive && negative) near_[of_a].add(v);
     });
-    if (positive && negative) near_.add(v);
-  });
-  near_.index();
+  }
 }
 
 }  // namespace parts

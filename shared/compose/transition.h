@@ -21,9 +21,8 @@ class Transition {
 
   /// The field at a point of a model's surface, within the grid.
   double value(const Vec3& p, bool of_a) const;
-  /// Whether the surface may pass through this voxel or beside it.
-  bool near(std::size_t voxel) const { return near_.has(voxel); }
-  bool nowhere() const { return near_.size() == 0; }
+  /// Whether the zero set may cut a model's surface in this voxel or beside it.
+  bool near(std::size_t voxel, bool of_a) const { return near_[of_a].has(voxel); }
 
  private:
   Transition(const JointVoxels& voxels, const VoxelLabels& labels) : voxels_(&voxels), labels_(&labels) {}
@@ -35,7 +34,7 @@ class Transition {
   const VoxelLabels* labels_;
   VoxelSet band_;              ///< voxels with a smoothed value
   std::vector<double> value_;  ///< per band voxel
-  VoxelSet near_;
+  VoxelSet near_[2];           ///< for B's surface, for A's
 };
 
 }  // namespace parts
