@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unit/compose_support.h"
+
+namespace parts::test {
+namespace {
+
+/// What a user is promised of every composition of closed models.
+struct Tally {
+  int scenes = 0, clean = 0, refused = 0;
+};
+
+void compose_random_scenes(Cut cut, unsigned from, unsigned to, Tally& tally) {
+  for (unsigned seed = from; seed < to; ++seed) {
+    const std::string what = "random_scene(" + std::to_string(seed) + ")";
+    const Scene scene = random_scene(seed);
+    const Part a{scene.a, scene.keep_a}, b{scene.b, scene.keep_b};
+    ComposeOptions options;
+    options.cut = cut;
+    options.resolution = seed % 3 == 0 ? 30 + int(seed % 40) : 0;
+    ++tally.scenes;
+    ComposeResult r;
+    try {
+      r = compose_quietly(a, b, options);
+    } catch (const UserError&) {
+      ++tally.refused;
+      continue;
+    }
+    expect_closed_manifold(r.composed, what);
+    EXPECT_EQ(r.face_from_b.size(), r.composed.faces.size()) << what;
+    EXPECT_EQ(missing_faces(r, a, b), 0) << what;
+    EXPECT_EQ(r.report.loops_open, 0) << what;
+    // Crossed faces are split, and their neighbours at the same edges.
+    const double near = 8 * r.report.voxel_size + 2 * std::max(longest_edge(a.mesh), longest_edge(b.mesh));
+    EXPECT_EQ(changed_far_faces(r, a.mesh, b.mesh, near), 0) << what;
+    // Every component that the cut makes ends at a contour, joined or capped.
+    EXPECT_LE(check(r.composed).components, 2 + r.report.loops_a + r.report.loops_b) << what;
+    EXPECT_GE(r.report.seconds, r.report.cut_seconds) << what;
+    const long had = self_intersections(a.mesh) + self_intersections(b.mesh);
+    tally.clean += self_intersections(r.composed, had + 1) <= had;
+  }
+}
+
+TEST(ComposeRandom, RefinedKeepsItsPromises) {
+  Tally tally;
+  compose_random_scenes(Cut::Refined, 0, 70, tally);
+  RecordProperty("without_new_self_intersections", tally.clean);
+  EXPECT_LE(tally.refused, 2);
+  // Scenes are turned at random; the cut cannot join all of them without a fold.
+  EXPECT_GE(tally.clean, (tally.scenes - tally.refused) * 75 / 100);
+}
+
+TEST(ComposeRandom, ThesisKeepsItsPromises) {
+  Tally tally;
+  compose_random_scenes(Cut::Thesis, 0, 30, tally);
+  RecordProperty("without_new_self_intersections", tally.clean);
+  EXPECT_LE(tally.refused, 2);
+  EXPECT_GE(tally.clean, (tally.scenes - tally.refused) * 40 / 100);
+}
+
+TEST(ComposeRandom, TheSameBytesForAnyNumberOfThreads) {
+  for (unsigned seed = 200; seed < 206; ++seed) {
+    const Scene scene = random_scene(seed);
+    ComposeOptions options;
+    options.cut = seed % 2 ? Cut::Thesis : Cut::Refined;
+    options.transition_surface = true;
+    std::vector<ComposeResult> results;
+    for (const int threads : {1, 2, 8}) {
+      options.threads = threads;
+      results.push_back(compose_quietly({scene.a, scene.keep_a}, {scene.b, scene.keep_b}, options));
+    }
+    for (std::size_t i = 1; i < results.size(); ++i) {
+      EXPECT_EQ(results[i].composed.vertices, results[0].composed.vertices) << seed;
+      EXPECT_EQ(results[i].composed.faces, results[0].composed.faces) << seed;
+      EXPECT_EQ(results[i].face_from_b, results[0].face_from_b) << seed;
+      EXPECT_EQ(results[i].clipped_a.vertices, results[0].clipped_a.vertices) << seed;
+      EXPECT_EQ(results[i].clipped_b.faces, results[0].clipped_b.faces) << seed;
+      EXPECT_EQ(results[i].transition.vertices, results[0].transition.vertices) << seed;
+      EXPECT_EQ(results[i].report.cut_cost, results[0].report.cut_cost) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace parts::test
