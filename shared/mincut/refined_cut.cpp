@@ -169,17 +169,18 @@ class RefinedCut {
   struct Sheet {
     bool of_a = false;
     int size = 0;
+    int inside = 0;  ///< voxels that say that it lies within the other model, less those that do not
   };
   /// What lies between seams.
   struct Region {
     bool source = false, sink = false, seam = false, shared = false;
-    long only_a = 0, only_b = 0;
+    long only_a = 0, only_b = 0, inside = 0;
     std::int8_t label() const {
       if (source) return VoxelLabels::kA;
       if (sink) return VoxelLabels::kB;
-      // Cut off from both constraints: a sheet of one model alone is dropped;
-      // otherwise the larger share stays.
-      if (!shared) return only_a ? VoxelLabels::kB : VoxelLabels::kA;
+      // Cut off from both constraints: a sheet of one model alone is dropped
+      // if it lies within the other; of several the larger share stays.
+      if (!shared) return (only_a > 0) == (inside >= 0) ? VoxelLabels::kB : VoxelLabels::kA;
       return only_a > only_b ? VoxelLabels::kA : VoxelLabels::kB;
     }
   };
@@ -250,7 +251,7 @@ void RefinedCut::find_regions() {
     if (places_.shared[i])
       r.shared = true;
     else
-      ++(sheet_[node].of_a ? r.only_a : r.only_b);
+      ++(sheet_[node].of_a ? r.only_a : r.only_b), r.inside += sheet_[node].inside;
   }
   for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
     const int node = nodes_.of_piece[k];
@@ -287,8 +288,10 @@ void RefinedCut::tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_
           const float height = Eigen::Vector3f(float(x), float(y), float(z)).dot(normal[of_a]);
           if (std::abs(height) < 1) continue;  // about a voxel: neither side
           const std::array<int, 2> found{nodes_.of_place[p], height > 0};
-          if (std::find(sheets[of_a].begin(), sheets[of_a].end(), found) == sheets[of_a].end())
+          if (std::find(sheets[of_a].begin(), sheets[of_a].end(), found) == sheets[of_a].end()) {
             sheets[of_a].push_back(found);
+            sheet_[found[0]].inside += height < 0 ? 1 : -1;
+          }
         }
     for (const auto& a : sheets[1])
       for (const auto& b : sheets[0]) ties_[{a[0], b[0]}] += a[1] != b[1] ? 1 : -1;
