@@ -5,6 +5,7 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -44,10 +45,15 @@ void run_tasks(int n, int threads, Progress& progress, const Body& body) {
     }
   };
   std::vector<std::thread> pool;
-  for (int t = 1; t < std::min(threads, n); ++t)
-    pool.emplace_back(work, [&] {
-      if (failed) throw Cancelled();
-    });
+  pool.reserve(std::max(0, std::min(threads, n)));
+  try {
+    for (int t = 1; t < std::min(threads, n); ++t)
+      pool.emplace_back(work, [&] {
+        if (failed) throw Cancelled();
+      });
+  } catch (const std::system_error&) {
+    // No more threads to be had: those that there are do all tasks.
+  }
   work(speak);
   try {  // others may still be busy
     while (done < n && !failed) {
