@@ -6,6 +6,14 @@
 
 namespace parts {
 
+/// Number of bits set. Plain arithmetic: without the processor's own instruction,
+/// which not every x86-64 has, the compiler's builtin is a call into a library.
+inline int popcount(std::uint64_t w) {
+  w -= w >> 1 & 0x5555555555555555;
+  w = (w & 0x3333333333333333) + (w >> 2 & 0x3333333333333333);
+  return int(((w + (w >> 4)) & 0x0f0f0f0f0f0f0f0f) * 0x0101010101010101 >> 56);
+}
+
 /// A set of voxels as one bit a voxel, with ranks: the n-th set voxel is node n.
 class VoxelSet {
  public:
@@ -29,13 +37,13 @@ class VoxelSet {
   void index() {
     rank_.resize(words_.size());
     size_ = 0;
-    for (std::size_t i = 0; i < words_.size(); ++i) rank_[i] = int(size_), size_ += __builtin_popcountll(words_[i]);
+    for (std::size_t i = 0; i < words_.size(); ++i) rank_[i] = int(size_), size_ += popcount(words_[i]);
   }
   long size() const { return size_; }
   /// The number of v among the set voxels, -1 where v is not one.
   int node(std::size_t v) const {
     const std::uint64_t w = words_[v >> 6], bit = std::uint64_t(1) << (v & 63);
-    return w & bit ? rank_[v >> 6] + __builtin_popcountll(w & (bit - 1)) : -1;
+    return w & bit ? rank_[v >> 6] + popcount(w & (bit - 1)) : -1;
   }
   template <class Visit>
   void for_each(const Visit& visit) const {

@@ -209,7 +209,7 @@ Mesh bush(unsigned seed, int cells) {
     const Ball ball{random.direction() * random.uniform(0.45, 0.65), random.uniform(0.13, 0.2)};
     limbs.push_back({ball, ball});
   }
-  return blend(limbs, 0.03, cells);
+  return blend(limbs, 0.05, cells);
 }
 
 Mesh glasses(int cells) {

@@ -43,8 +43,8 @@ Mesh blend(const std::vector<Limb>& limbs, double softness, int cells);
 /// resolution; below 48 thin limbs may touch themselves.
 Mesh animal(int cells = 48);               ///< body, four legs, neck, head, tail; its length runs along z
 Mesh man(int cells = 48);                  ///< torso, arms, legs, head
-Mesh bust(unsigned seed, int cells = 40);  ///< head, neck, shoulders; another face for another seed
-Mesh bush(unsigned seed, int cells = 40);
+Mesh bust(unsigned seed, int cells = 48);  ///< head, neck, shoulders; another face for another seed
+Mesh bush(unsigned seed, int cells = 48);
 Mesh glasses(int cells = 64);  ///< two rims, a bridge, two temples: genus 2
 Mesh hat(int around = 48);     ///< a crown, hollow from below, and a brim
 
