@@ -65,8 +65,9 @@ std::unique_ptr<Attempt> attempt(Model& a, Model& b, const Box& volume, int reso
                                  Progress& progress) {
   auto t = std::make_unique<Attempt>();
   progress.stage("Finding the minimal cut", 10, 50);
-  t->decision = decide(a, b, volume, resolution, options, t->report);
+  t->decision = decide(a, b, volume, resolution, options, t->report, progress);
   if (!t->decision.labels.connected) return t;
+  progress.at(0.9);
   const Transition transition = make_transition(a, b, t->decision, options.cut);
   progress.stage("Clipping", 50, 75);
   t->a = clip_model(a, true, t->decision, transition, options.cut, options.threads);
@@ -109,8 +110,11 @@ std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, con
       resolution = std::min(kFinest, resolution * 8 / 5), ++finer;
     } catch (const SharedVoxel&) {
       if (best) break;
-      if (finer++ == kFiner) throw;
-      resolution *= 2;
+      if (finer++ == kFiner || resolution >= kFinest) throw;
+      resolution = std::min(kFinest, resolution * 2);
+    } catch (const UserError&) {
+      if (best) break;  // a finer grid that does not fit: what there is will do
+      throw;
     }
   return best;
 }
@@ -124,9 +128,9 @@ void check(const ComposeOptions& o) {
     throw UserError("SmoothDistance must be a length of 0 or more; 0 means two voxels.");
 }
 
-void log_notes(const Model& m, Progress& progress) {
+void log_notes(const Model& m, const char* suffix, Progress& progress) {
   const auto say = [&](const char* what, int count) {
-    if (count) progress.log(std::string(what) + "_" + m.name + ": " + std::to_string(count));
+    if (count) progress.log(std::string(what) + suffix + ": " + std::to_string(count));
   };
   say("welded_vertices", m.prepared.welded_vertices);
   say("dropped_faces", m.prepared.dropped_faces);
@@ -150,8 +154,9 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   const Clock clock;
   check(options);
   progress.stage("Preparing the models", 0, 10);
-  Model a = make_model(part_a, "A"), b = make_model(part_b, "B");
-  log_notes(a, progress), log_notes(b, progress);
+  Model a = make_model(part_a, part_a.name.empty() ? "model A" : part_a.name),
+        b = make_model(part_b, part_b.name.empty() ? "model B" : part_b.name);
+  log_notes(a, "_A", progress), log_notes(b, "_B", progress);
   const Box volume = transition_volume(a, b, options.volume);
   const bool turned = enclosed(a.prepared) * enclosed(b.prepared) < 0;
   if (turned) flip_orientation(b.prepared.mesh);

@@ -36,6 +36,7 @@ struct ComposeOptions {
 struct Part {
   Mesh mesh;
   std::vector<char> keep;
+  std::string name = {};  ///< in error sentences; empty: "model A", "model B"
 };
 
 /// What a composition measured.

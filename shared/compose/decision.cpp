@@ -8,9 +8,10 @@
 namespace parts {
 
 Decision decide(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
-                ComposeReport& report) {
+                ComposeReport& report, Progress& progress) {
   Decision d;
   d.voxels = joint_voxels(a, b, volume, resolution, options.threads);
+  progress.at(0.3);
   report.voxels_a = report.voxels_b = report.voxels_both = 0;
   for (int n = 0; n < int(d.voxels.size()); ++n) {
     const std::uint8_t flags = d.voxels.flags[n];
@@ -33,8 +34,9 @@ Decision decide(Model& a, Model& b, const Box& volume, int resolution, const Com
     constexpr int kFarthest = 3;
     double least = 2;
     for (int reach = 0; reach <= kFarthest && least > 0.1; ++reach) {
+      progress.at(0.5 + 0.1 * reach);
       VoxelLabels labels = refined_cut(d.voxels, normal_a, normal_b, {reach});
-      const double doubled = labels.connected ? double_layer(d.voxels, labels, normal_a, normal_b) : 1;
+      const double doubled = labels.connected ? double_layer(d.voxels, labels, normal_a, normal_b) : 1.5;
       if (doubled < least) least = doubled, d.reach = reach, d.labels = std::move(labels);
     }
   }

@@ -11,8 +11,8 @@ namespace parts {
 struct SharedVoxel : UserError {
   SharedVoxel()
       : UserError(
-            "What is to be kept of model A and of model B lies in the same voxel; mark parts farther apart, or raise "
-            "the Resolution.") {}
+            "What is to be kept of the two models lies in the same voxel; mark parts farther apart, or raise the "
+            "Resolution.") {}
 };
 
 /// The joint voxels, their labels, and how far apart the models may be.
@@ -26,6 +26,6 @@ struct Decision {
 /// the models do not meet between their constraints. Fills the report's
 /// figures on voxels and cut. @throws SharedVoxel, UserError
 Decision decide(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
-                ComposeReport& report);
+                ComposeReport& report, Progress& progress);
 
 }  // namespace parts

@@ -59,7 +59,8 @@ std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fix
       continue;
     }
     Progress share = progress.part(100 * frame / frames, 100 * (frame + 1) / frames);
-    results.push_back(compose({mesh, fixed}, {posed(mesh, transform(pose, t)), moving}, options, share));
+    results.push_back(compose({mesh, fixed, "the fixed part"},
+                              {posed(mesh, transform(pose, t)), moving, "the moving part"}, options, share));
   }
   return results;
 }

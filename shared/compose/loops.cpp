@@ -83,15 +83,18 @@ std::vector<std::array<int, 2>> match_loops(const Mesh& mesh, const std::vector<
   std::vector<std::vector<Vec3>> sa, sb;
   for (const Loop& l : a) sa.push_back(samples(mesh, l));
   for (const Loop& l : b) sb.push_back(samples(mesh, l));
-  const auto box = [&](const std::vector<Vec3>& s) {
-    Box x;
-    for (const Vec3& p : s) x.extend(p);
-    return x;
+  const auto boxes = [](const std::vector<std::vector<Vec3>>& samples_of) {
+    std::vector<Box> b(samples_of.size());
+    for (std::size_t i = 0; i < b.size(); ++i)
+      for (const Vec3& p : samples_of[i]) b[i].extend(p);
+    return b;
   };
+  const std::vector<Box> box_a = boxes(sa), box_b = boxes(sb);
   std::vector<std::pair<double, std::array<int, 2>>> near;
   for (int i = 0; i < int(a.size()); ++i)
     for (int j = 0; j < int(b.size()); ++j) {
-      if (box(sa[i]).exteriorDistance(box(sb[j])) > max_gap) continue;
+      // A ring that faces a chain is left to the stitching by pieces.
+      if (a[i].closed != b[j].closed || box_a[i].exteriorDistance(box_b[j]) > max_gap) continue;
       const double d = std::max(mean_nearest(sa[i], sb[j]), mean_nearest(sb[j], sa[i]));
       if (d <= max_gap) near.push_back({d, {i, j}});
     }

@@ -9,8 +9,6 @@
 namespace parts {
 namespace {
 
-std::string quoted(const char* name) { return std::string("Model ") + name; }
-
 bool any(const std::vector<char>& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
 
 double area(const Mesh& m, int f) {
@@ -63,19 +61,18 @@ void check_memory(const Model& a, const Model& b, const Grid& grid, int resoluti
 
 }  // namespace
 
-Model make_model(const Part& part, const char* name) {
+Model make_model(const Part& part, const std::string& name) {
   if (part.mesh.faces.empty())
-    throw UserError(quoted(name) + " has no faces; choose a layer that holds a triangle mesh.");
+    throw UserError("There are no faces in " + name + "; choose a layer that holds a triangle mesh.");
   if (part.keep.size() != part.mesh.faces.size() || !any(part.keep))
-    throw UserError("Nothing of model " + std::string(name) +
-                    " is marked to be kept; select faces on it, or give a box or a point.");
+    throw UserError("Nothing of " + name + " is marked to be kept; select faces on it, or give a box or a point.");
   Model m{name, prepare(part.mesh), {}, {}};
   if (m.prepared.mesh.faces.empty())
-    throw UserError(quoted(name) +
-                    " has no usable face (all have non-finite or coinciding corners); clean the mesh first.");
+    throw UserError("There is no usable face in " + name +
+                    " (all have non-finite or coinciding corners); clean the mesh first.");
   for (int f : m.prepared.source_face) m.keep.push_back(part.keep[f]);
   if (!any(m.keep))
-    throw UserError("What is marked to be kept of model " + std::string(name) +
+    throw UserError("What is marked to be kept of " + name +
                     " has no usable face (non-finite or coinciding corners); clean the mesh or mark more.");
   return m;
 }
@@ -93,10 +90,13 @@ Box transition_volume(const Model& a, const Model& b, const Box& asked) {
     throw UserError("The volume has no thickness; make every coordinate of VolumeMax larger than that of VolumeMin.");
   for (const auto& [model, box] : {std::pair(&a, &box_a), std::pair(&b, &box_b)})
     if (!asked.intersects(*box))
-      throw UserError("The volume misses model " + std::string(model->name) +
-                      "; move the volume to where both models are.");
+      throw UserError("The volume misses " + model->name + "; move the volume to where both models are.");
   // No more than there is to cut, or the voxels would be too large.
-  return asked.intersection(box_a.merged(box_b));
+  const Box used = asked.intersection(box_a.merged(box_b));
+  if (!(used.sizes().maxCoeff() > 0))
+    throw UserError(
+        "The volume only touches the models; move it so that it holds the place where they are to be joined.");
+  return used;
 }
 
 int natural_resolution(const Model& a, const Model& b, const Box& volume) {
@@ -124,10 +124,9 @@ JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, 
   const VoxelSet keep_b = rasterize(b.prepared.mesh, inside(b), grid, threads);
   for (const auto& [model, set, keep] : {std::tuple(&a, &set_a, &keep_a), std::tuple(&b, &set_b, &keep_b)}) {
     if (set->size() == 0)
-      throw UserError("The volume misses model " + std::string(model->name) +
-                      "; move the volume to where both models are.");
+      throw UserError("The volume misses " + model->name + "; move the volume to where both models are.");
     if (keep->size() == 0)
-      throw UserError("What is to be kept of model " + std::string(model->name) +
+      throw UserError("What is to be kept of " + model->name +
                       " lies outside the volume; enlarge the volume or mark a part inside it.");
   }
   JointVoxels voxels = join(grid, set_a, set_b, keep_a, keep_b);
@@ -193,7 +192,7 @@ double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const 
     doubled += any_around(n, kNear, parallel) &&
                !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
   }
-  return double(doubled) / double(std::max(1L, std::min(kept_a, kept_b)));
+  return std::min(1.0, double(doubled) / double(std::max(1L, std::min(kept_a, kept_b))));
 }
 
 }  // namespace parts

@@ -10,14 +10,14 @@ namespace parts {
 
 /// A model ready to be cut: its prepared mesh and its flags.
 struct Model {
-  const char* name;  ///< in sentences: "A" or "B"
+  std::string name;  ///< in sentences: "model A"
   Prepared prepared;
   std::vector<char> keep;  ///< per face: must survive
   std::vector<int> piece;  ///< per face: number of its outer piece in JointVoxels, -1 inside the volume
 };
 
 /// Prepares a part. @throws UserError  no face, or no constraint
-Model make_model(const Part& part, const char* name);
+Model make_model(const Part& part, const std::string& name);
 
 /// The box in which the models may be joined: the user's, or both models'.
 /// @throws UserError  it has no thickness, is not finite, or misses a model

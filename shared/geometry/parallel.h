@@ -23,6 +23,7 @@ void parallel_for(long n, int threads, const Body& body) {
   }
   std::vector<std::exception_ptr> failed(bands);
   std::vector<std::thread> pool;
+  pool.reserve(bands - 1);
   const auto run = [&](long t) {
     try {
       body(n * t / bands, n * (t + 1) / bands);

@@ -137,13 +137,9 @@ class RefinedCut {
       : voxels_(voxels), reach_(reach), places_(find_places(voxels, reach)), nodes_(number_nodes(voxels, places_)) {
     for (int i = 0; i < int(places_.cells.size()); ++i)
       weight_.push_back(places_.shared[i] ? seam_weight(places_, i, normal_a, normal_b) : 0);
-    sheet_.resize(nodes_.count);
+    of_a_.assign(nodes_.count, 0);
     for (int i = 0; i < int(places_.cells.size()); ++i)
-      if (!places_.shared[i]) {
-        Sheet& s = sheet_[nodes_.of_place[i]];
-        s.of_a = flags(i) & kHasA;
-        ++s.size;
-      }
+      if (!places_.shared[i]) of_a_[nodes_.of_place[i]] = (flags(i) & kHasA) != 0;
     source_.assign(nodes_.count, 0), sink_ = source_;
     for (int i = 0; i < int(places_.cells.size()); ++i) {
       const int node = nodes_.of_place[i];
@@ -151,10 +147,9 @@ class RefinedCut {
       if (flags(i) & kKeepB) sink_[node + (places_.shared[i] ? 1 : 0)] = 1;
     }
     for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
-      Sheet& s = sheet_[nodes_.of_piece[k]];
-      s.of_a = voxels_.outer[k].of_a;
-      ++s.size;
-      if (voxels_.outer[k].keep) (s.of_a ? source_ : sink_)[nodes_.of_piece[k]] = 1;
+      const bool of_a = voxels_.outer[k].of_a;
+      of_a_[nodes_.of_piece[k]] = of_a;
+      if (voxels_.outer[k].keep) (of_a ? source_ : sink_)[nodes_.of_piece[k]] = 1;
     }
     tie_crossing_sheets(normal_a, normal_b);
   }
@@ -165,22 +160,16 @@ class RefinedCut {
   double cost = 0;
 
  private:
-  /// A region that one model alone occupies, whole.
-  struct Sheet {
-    bool of_a = false;
-    int size = 0;
-    int inside = 0;  ///< voxels that say that it lies within the other model, less those that do not
-  };
   /// What lies between seams.
   struct Region {
     bool source = false, sink = false, seam = false, shared = false;
-    long only_a = 0, only_b = 0, inside = 0;
+    long only_a = 0, only_b = 0;
     std::int8_t label() const {
       if (source) return VoxelLabels::kA;
       if (sink) return VoxelLabels::kB;
-      // Cut off from both constraints: a sheet of one model alone is dropped
-      // if it lies within the other; of several the larger share stays.
-      if (!shared) return (only_a > 0) == (inside >= 0) ? VoxelLabels::kB : VoxelLabels::kA;
+      // Cut off from both constraints: a sheet of one model alone is dropped;
+      // of several the larger share stays.
+      if (!shared) return only_a ? VoxelLabels::kB : VoxelLabels::kA;
       return only_a > only_b ? VoxelLabels::kA : VoxelLabels::kB;
     }
   };
@@ -194,8 +183,8 @@ class RefinedCut {
   int reach_;
   Places places_;
   Nodes nodes_;
-  std::vector<int> weight_;   ///< per place
-  std::vector<Sheet> sheet_;  ///< per node
+  std::vector<int> weight_;  ///< per place
+  std::vector<char> of_a_;   ///< per node that is a sheet: a region that one model alone occupies, here A
   std::map<std::pair<int, int>, int>
       ties_;                         ///< (sheet of A, of B) -> voxels that ask not to keep both, less those that do not
   std::vector<char> source_, sink_;  ///< per node: tied to a terminal
@@ -251,7 +240,7 @@ void RefinedCut::find_regions() {
     if (places_.shared[i])
       r.shared = true;
     else
-      ++(sheet_[node].of_a ? r.only_a : r.only_b), r.inside += sheet_[node].inside;
+      ++(of_a_[node] ? r.only_a : r.only_b);
   }
   for (std::size_t k = 0; k < voxels_.outer.size(); ++k) {
     const int node = nodes_.of_piece[k];
@@ -284,14 +273,12 @@ void RefinedCut::tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_
           if (!voxels_.grid.inside(c[0] + x, c[1] + y, c[2] + z)) continue;
           const int p = places_.set.node(voxels_.grid.index(c[0] + x, c[1] + y, c[2] + z));
           if (p < 0 || places_.shared[p]) continue;
-          const bool of_a = sheet_[nodes_.of_place[p]].of_a;
+          const bool of_a = of_a_[nodes_.of_place[p]];
           const float height = Eigen::Vector3f(float(x), float(y), float(z)).dot(normal[of_a]);
           if (std::abs(height) < 1) continue;  // about a voxel: neither side
           const std::array<int, 2> found{nodes_.of_place[p], height > 0};
-          if (std::find(sheets[of_a].begin(), sheets[of_a].end(), found) == sheets[of_a].end()) {
+          if (std::find(sheets[of_a].begin(), sheets[of_a].end(), found) == sheets[of_a].end())
             sheets[of_a].push_back(found);
-            sheet_[found[0]].inside += height < 0 ? 1 : -1;
-          }
         }
     for (const auto& a : sheets[1])
       for (const auto& b : sheets[0]) ties_[{a[0], b[0]}] += a[1] != b[1] ? 1 : -1;
@@ -301,7 +288,7 @@ void RefinedCut::tie_crossing_sheets(const std::vector<Eigen::Vector3f>& normal_
 VoxelLabels RefinedCut::labels() const {
   VoxelLabels cut;
   cut.cost = cost;
-  cut.connected = cost > 0;
+  cut.connected = std::find(seam_.begin(), seam_.end(), 1) != seam_.end();
   cut.label.assign(voxels_.size(), VoxelLabels::kSeam);
   const auto decided = [](const Region& r) { return r.source || r.sink || r.seam; };
   std::vector<int> group(voxels_.size(), -1), group_of(nodes_.count, -1);
