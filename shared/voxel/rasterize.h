@@ -32,12 +32,15 @@ class TriangleBoxTest {
   template <class Visit>
   void for_each_box(const std::array<int, 3>& dims, const Visit& visit) const {
     std::array<int, 3> from, to;
+    bool one = true;
     for (int d = 0; d < 3; ++d) {
-      from[d] = std::max(0, int(std::floor(std::clamp(lo_[d] - kHair, -1.0, 2e9))));
-      to[d] = std::min(dims[d] - 1, int(std::floor(std::clamp(hi_[d] + kHair, -1.0, 2e9))));
+      from[d] = int(std::floor(std::clamp(lo_[d] - kHair, -1.0, 2e9)));
+      to[d] = int(std::floor(std::clamp(hi_[d] + kHair, -1.0, 2e9)));
+      one &= from[d] == to[d];
+      from[d] = std::max(from[d], 0), to[d] = std::min(to[d], dims[d] - 1);
       if (from[d] > to[d]) return;
     }
-    if (from == to) return void(visit(from[0], from[1], from[2]));
+    if (one) return void(visit(from[0], from[1], from[2]));
     int w;  // the axis along which the triangle is flattest: few boxes a column
     normal_.cwiseAbs().maxCoeff(&w);
     const int u = (w + 1) % 3, v = (w + 2) % 3;
