@@ -42,18 +42,9 @@ void pierce(const Mesh& edges_of, int f, const Mesh& faces_of, int g, std::vecto
 std::vector<Vec3> crossing_points(const Mesh& a, const Mesh& b, const JointVoxels& voxels, const VoxelLabels& labels) {
   constexpr double kClearAngle = 0.94;
   const Grid& grid = voxels.grid;
-  // Beside the seam voxels too: the curve may weave between two layers of
-  // intersection voxels, of which the cut takes one.
   VoxelSet seam(grid.count());
-  for (long n = 0; n < voxels.size(); ++n) {
-    if (labels.label[n] != VoxelLabels::kSeam) continue;
-    const std::array<int, 3> c = grid.cell(voxels.cells[n]);
-    for (int k = -1; k <= 1; ++k)
-      for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i)
-          if (const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k); m >= 0 && voxels.both(m))
-            seam.add(voxels.cells[m]);
-  }
+  for (long n = 0; n < voxels.size(); ++n)
+    if (labels.label[n] == VoxelLabels::kSeam) seam.add(voxels.cells[n]);
   seam.index();
   const auto of_a = faces_in(a, grid, seam), of_b = faces_in(b, grid, seam);
   const std::vector<std::size_t> cells = seam.cells();

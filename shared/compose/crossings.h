@@ -6,7 +6,7 @@
 namespace parts {
 
 /// Points on the curves in which the two meshes cross at a clear angle (over
-/// 20°), within and beside the seam voxels. There the best border is known exactly.
+/// 20°), within the seam voxels. There the best border is known exactly.
 std::vector<Vec3> crossing_points(const Mesh& a, const Mesh& b, const JointVoxels& voxels, const VoxelLabels& labels);
 
 }  // namespace parts
