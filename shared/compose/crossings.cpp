@@ -42,9 +42,20 @@ void pierce(const Mesh& edges_of, int f, const Mesh& faces_of, int g, std::vecto
 std::vector<Vec3> crossing_points(const Mesh& a, const Mesh& b, const JointVoxels& voxels, const VoxelLabels& labels) {
   constexpr double kClearAngle = 0.94;
   const Grid& grid = voxels.grid;
+  // Across the sides of the seam voxels too: where the curve runs between two
+  // layers of intersection voxels, the cut takes one.
   VoxelSet seam(grid.count());
-  for (long n = 0; n < voxels.size(); ++n)
-    if (labels.label[n] == VoxelLabels::kSeam) seam.add(voxels.cells[n]);
+  for (long n = 0; n < voxels.size(); ++n) {
+    if (labels.label[n] != VoxelLabels::kSeam) continue;
+    seam.add(voxels.cells[n]);
+    const std::array<int, 3> c = grid.cell(voxels.cells[n]);
+    for (int d = 0; d < 3; ++d)
+      for (int s : {-1, 1}) {
+        std::array<int, 3> q = c;
+        q[d] += s;
+        if (const int m = voxels.at(q[0], q[1], q[2]); m >= 0 && voxels.both(m)) seam.add(voxels.cells[m]);
+      }
+  }
   seam.index();
   const auto of_a = faces_in(a, grid, seam), of_b = faces_in(b, grid, seam);
   const std::vector<std::size_t> cells = seam.cells();
