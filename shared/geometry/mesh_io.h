@@ -8,7 +8,7 @@
 namespace parts {
 
 /// Reads a .ply, .obj, .off or .stl file with its colours, quality and texture
-/// coordinates (through vcglib). Texture file names come back as the file names
+/// coordinates. Texture file names come back as the file names
 /// them, made relative to the current directory or absolute so that they open.
 /// @throws UserError  the file is missing, unreadable or holds no face
 Mesh read_mesh(const std::string& path);
