@@ -63,12 +63,10 @@ function(add_meshlab_filter name)
   if(NOT sources)
     file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/*.h")
   endif()
-  set(host "${PROJECT_SOURCE_DIR}/shared/host")
   set_property(GLOBAL APPEND PROPERTY PARTS_PLUGINS ${name})
-  add_library(${name} MODULE ${sources} "${host}/plugin.cpp" "${host}/plugin.h")
-  target_link_libraries(${name} PRIVATE parts_host)
+  add_library(${name} MODULE ${sources})
+  target_link_libraries(${name} PRIVATE parts_plugin parts_host)
   set_target_properties(${name} PROPERTIES
-    AUTOMOC ON
     LIBRARY_OUTPUT_DIRECTORY "${PARTS_STAGE_PLUGIN_DIR}"
     BUILD_WITH_INSTALL_RPATH ON
     INSTALL_RPATH "$ORIGIN/..")
