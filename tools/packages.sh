@@ -10,7 +10,7 @@ build_packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libgtest-dev)
 run_packages=(xvfb libgl1-mesa-dri python3 python3-numpy python3-pil libcgal-demo)
-bench_packages=(libbenchmark-dev libcgal-dev)
+bench_packages=(libcgal-dev)
 format_packages=(clang-format-14)
 
 # need_packages <package>...   installs those that are missing
