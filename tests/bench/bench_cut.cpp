@@ -37,7 +37,8 @@ Times cut_times(const Scene& scene, const Entry& entry, Cut cut, long& voxels) {
   double wall = 1e300;
   const auto whole = best_of([&] {
     ComposeReport report;
-    const Decision d = decide(a, b, volume, resolution, options, report);
+    Progress silent;
+    const Decision d = decide(a, b, volume, resolution, options, report, silent);
     if (report.grid != entry.dims || !d.labels.connected) throw std::logic_error("not the scene that was meant");
     wall = std::min(wall, report.cut_seconds), voxels = d.voxels.size();
   });
