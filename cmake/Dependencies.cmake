@@ -26,6 +26,7 @@ find_package(Threads REQUIRED)
 parts_find_library(deps::eigen Eigen/Core INCLUDE_SUFFIXES eigen3)
 parts_find_library(deps::opencv opencv2/core.hpp opencv_imgcodecs opencv_imgproc opencv_core INCLUDE_SUFFIXES opencv4)
 parts_find_library(deps::flann flann/flann.hpp flann_cpp lz4)
+parts_find_library(deps::expat expat.h expat)
 parts_find_library(deps::maxflow maxflow.h maxflow INCLUDE_SUFFIXES maxflow-3.0)
 
 # MeshLab's headers (with vcglib), which no Debian binary package carries.
