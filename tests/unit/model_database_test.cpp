@@ -63,7 +63,9 @@ TEST_F(ModelDatabaseTest, NaturalOrderIsAStrictOrder) {
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     EXPECT_FALSE(natural_less(sorted[i], sorted[i]));
     for (std::size_t j = 0; j < sorted.size(); ++j)
-      if (i != j) EXPECT_NE(natural_less(sorted[i], sorted[j]), natural_less(sorted[j], sorted[i]));
+      if (i != j) {
+        EXPECT_NE(natural_less(sorted[i], sorted[j]), natural_less(sorted[j], sorted[i]));
+      }
   }
   EXPECT_TRUE(natural_less("head_2", "head_10"));
   EXPECT_TRUE(natural_less("a99999999999999999999998", "a99999999999999999999999"));
