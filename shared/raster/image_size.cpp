@@ -74,7 +74,8 @@ std::optional<ImageHead> tiff_head(std::ifstream& file, bool big_endian) {
     double value = b.number(at + value_at, type == 3 ? 2 : type == 16 ? 8 : 4);
     if (tag == 256) width = value;
     if (tag == 257) height = value;
-    if (tag == 258) bits = type == 3 && count > (large ? 4 : 2) ? b.number(std::int64_t(b.number(at + value_at, 4)), 2) : value;
+    if (tag == 258)
+      bits = type == 3 && count > (large ? 4 : 2) ? b.number(std::int64_t(b.number(at + value_at, 4)), 2) : value;
     if (tag == 277) channels = value;
   }
   return checked(width, height, bits / 8 * channels);

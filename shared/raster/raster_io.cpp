@@ -130,8 +130,7 @@ Image read_image(const std::string& path) {
   }
   if (planes.size() == 1) planes.resize(3, planes[0]);
   if (planes.size() != 3)
-    throw UserError(named(path) + "has " + std::to_string(planes.size()) +
-                    " channels; save it as grey, RGB or RGBA.");
+    throw UserError(named(path) + "has " + std::to_string(planes.size()) + " channels; save it as grey, RGB or RGBA.");
   cv::merge(planes, image.color);
   return image;
 }
@@ -165,7 +164,8 @@ cv::Mat read_depth(const std::string& path, double scale) {
     throw UserError(named(path) + "has " + std::to_string(raw.channels()) +
                     " different channels and is no depth raster; use a float TIFF, a PFM or a 16-bit grey PNG.");
   if (raw.depth() == CV_8U)
-    throw UserError(named(path) + "has only 8 bits a pixel, too coarse for depth; use a float TIFF, a PFM or a 16-bit "
+    throw UserError(named(path) +
+                    "has only 8 bits a pixel, too coarse for depth; use a float TIFF, a PFM or a 16-bit "
                     "grey PNG.");
   cv::Mat depth;
   raw.convertTo(depth, CV_32F);
@@ -182,7 +182,8 @@ cv::Mat read_depth(const std::string& path, double scale) {
     }
   }
   if (zero)
-    throw UserError(named(path) + "holds nothing but zeros (an EXR file with only a Z channel reads like that); save "
+    throw UserError(named(path) +
+                    "holds nothing but zeros (an EXR file with only a Z channel reads like that); save "
                     "the depth as a float TIFF or PFM.");
   if (seen == 0)
     throw UserError(named(path) + "is background everywhere (0, infinite or not a number); save the depth again.");

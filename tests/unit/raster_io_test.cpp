@@ -57,7 +57,8 @@ std::string sentence(const Call& call) {
   return {};
 }
 
-#define EXPECT_SAYS(words, call) EXPECT_NE(sentence([&] { call; }).find(words), std::string::npos) << sentence([&] { call; })
+#define EXPECT_SAYS(words, call) \
+  EXPECT_NE(sentence([&] { call; }).find(words), std::string::npos) << sentence([&] { call; })
 
 cv::Mat ramp() {
   cv::Mat depth(5, 7, CV_32F);
@@ -197,7 +198,10 @@ TEST_F(RasterIo, APhotographIsTurnedUpright) {
   const std::string plain = save("p.jpg", cv::Mat(16, 32, CV_8UC3, cv::Scalar(1, 2, 3)));
   std::ifstream in(plain, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  const std::string exif("\xFF\xE1\0\x22" "Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 36);
+  const std::string exif(
+      "\xFF\xE1\0\x22"
+      "Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0",
+      36);
   const std::string turned = text("t.jpg", bytes.substr(0, 2) + exif + bytes.substr(2));
   EXPECT_EQ(read_image(plain).color.size(), cv::Size(32, 16));
   EXPECT_EQ(read_image(turned).color.size(), cv::Size(16, 32));
