@@ -12,6 +12,7 @@
 
 #include "geometry/error.h"
 #include "raster/image_size.h"
+#include "voxel/memory.h"
 
 namespace parts {
 namespace {
@@ -159,7 +160,9 @@ std::string png_of(std::uint32_t width, std::uint32_t height) {
 
 TEST_F(RasterIo, SizesAreToldBeforeAnythingIsAllocated) {
   EXPECT_SAYS("more than can be read", read_image(text("huge.png", png_of(2000000000, 2000000000))));
-  EXPECT_SAYS("32000 x 32000 pixels, which need", read_image(text("large.png", png_of(32000, 32000))));
+  if (available_memory() < 24e9) {
+    EXPECT_SAYS("32000 x 32000 pixels, which need", read_image(text("large.png", png_of(32000, 32000))));
+  }
   EXPECT_SAYS("more than can be read", read_depth(text("huge.pfm", "Pf\n900000 900000\n-1\n")));
 }
 
