@@ -16,7 +16,8 @@ namespace parts {
 /// other units, say) are drawn as large as the median one. The frame is the
 /// largest in which every model fits, in the views given and up to 35 degrees of
 /// yaw and 25 of pitch around them.
-/// @param views  from which to frame
+/// @param views    from which to frame
+/// @param options  up and front count where the class's preset does not say
 /// @throws UserError  no model can be read; more memory than there is
 std::unique_ptr<ExampleSource> render_examples(const ModelDatabase& database, const std::vector<View>& views,
                                                const ExampleOptions& options, Progress& progress);
