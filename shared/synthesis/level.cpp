@@ -69,7 +69,6 @@ LevelSetup make_setup(const std::vector<ImagePyramid>& examples, const Synthesis
   layout.factor.assign(layout.lanes, Lane::Zero());
   layout.everywhere.assign(layout.lanes, Lane::Zero());
   layout.active.assign(layout.lanes, Lane::Ones());
-  layout.floor.assign(layout.lanes, Lane::Ones());
   layout.position = float(std::sqrt(options.position) / (size / (1 << level)));
   const double sigma = side / 4.0;
   double total = 0;
@@ -86,7 +85,6 @@ LevelSetup make_setup(const std::vector<ImagePyramid>& examples, const Synthesis
     if (channel.normalize) {
       layout.normalized[c / 4][c % 4] = 1;
       layout.factor[c / 4][c % 4] = float(std::sqrt(channel.weight));
-      layout.floor[c / 4][c % 4] = float(d * d * 0.01);
     }
     setup.scale.push_back(channel.normalize ? 1.f : float(std::sqrt(channel.weight) / d));
   }

@@ -5,6 +5,25 @@
 #include <cmath>
 
 namespace parts {
+namespace {
+
+// Variance added before windows are normalised, as a share of the image's own:
+// noise in flat windows stays small.
+constexpr float flat = 0.01f;
+
+Lane image_variance(PatchPlane& plane, const cv::Mat& coverage, int lane) {
+  Eigen::Array4d sum = Eigen::Array4d::Zero(), squares = sum;
+  double total = 0;
+  for (int y = 0; y < plane.height; ++y)
+    for (int x = 0; x < plane.width; ++x) {
+      const double w = coverage.at<float>(y, x);
+      const Eigen::Array4d v = plane.at(x, y)[lane].cast<double>();
+      sum += w * v, squares += w * v * v, total += w;
+    }
+  return (squares / total - (sum / total).square()).max(1e-30).cast<float>();
+}
+
+}  // namespace
 
 void update_statistics(PatchPlane& plane, const cv::Mat& coverage, const PatchLayout& layout) {
   const int r = layout.radius();
@@ -13,6 +32,7 @@ void update_statistics(PatchPlane& plane, const cv::Mat& coverage, const PatchLa
   plane.offset.assign(n * plane.lanes, Lane::Zero());
   for (int lane = 0; lane < plane.lanes; ++lane) {
     if ((layout.normalized[lane] == 0).all()) continue;
+    const Lane floor = image_variance(plane, coverage, lane) * flat;
     for (int y = 0; y < plane.height; ++y)
       for (int x = 0; x < plane.width; ++x) {
         if (!plane.inside[plane.index(x, y)]) continue;
@@ -27,7 +47,7 @@ void update_statistics(PatchPlane& plane, const cv::Mat& coverage, const PatchLa
             sum += w * value, squares += w * value * value, total += w;
           }
         const Lane mean = sum / total, variance = (squares / total - mean * mean).max(0);
-        const Lane scale = layout.factor[lane] / (variance + layout.floor[lane]).sqrt();
+        const Lane scale = layout.factor[lane] / (variance + floor).sqrt();
         const long at = plane.index(x, y) * plane.lanes + lane;
         plane.scale[at] = layout.normalized[lane] * scale + (1 - layout.normalized[lane]);
         plane.offset[at] = -layout.normalized[lane] * mean * scale;

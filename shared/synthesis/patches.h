@@ -22,7 +22,6 @@ struct PatchLayout {
   std::vector<Lane> factor;      ///< of normalised channels, after normalising: the weight's root
   std::vector<Lane> everywhere;  ///< 1 where a channel counts in the query's background too (the silhouette)
   std::vector<Lane> active;      ///< 0: the channel takes no part yet
-  std::vector<Lane> floor;       ///< variance added before normalising, so that noise in flat windows stays small
   float position = 0;            ///< 1 / pixels that count 1
   int radius() const { return side / 2; }
   int window() const { return side * side * lanes; }  ///< lanes

@@ -12,10 +12,8 @@ namespace {
 
 constexpr int leaf_size = 8, most_axes = 14, band_rows = 16;
 
-// A window of an example as a query window: all of it counts.
-void gather_example(const LevelExample& e, int x, int y, const PatchLayout& layout, Window& window) {
-  gather(e.plane, e.coverage, x, y, layout, window);
-}
+// Windows larger than 7 x 7 are thinned out for the components.
+constexpr int most_picks = 7;
 
 }  // namespace
 
@@ -29,48 +27,20 @@ PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayou
   for (size_t k = 0; k < examples.size(); ++k) {
     const PatchPlane& p = examples[k].plane;
     if (!examples[k].active) continue;
-    for (int y = 0; y < p.height; ++y)
+    for (int y = 0; y < p.height; y += step)
       for (int x = y / step % step; x < p.width; x += step)
-        if (y % step == 0 && p.inside[p.index(x, y)]) all.push_back({int(k), x, y});
+        if (p.inside[p.index(x, y)]) all.push_back({int(k), x, y});
   }
   if (all.empty()) return;
 
-  // Principal components of a sample, as rows of root-weighted windows and the position.
-  const int lanes = layout.window(), dims = lanes * 4 + 2;
-  std::vector<Lane> root(lanes);
-  for (int i = 0; i < lanes; ++i) root[i] = (layout.gaussian[i / layout.lanes] * layout.active[i % layout.lanes]).sqrt();
-  const long sample = std::min<long>(all.size(), 3000);
-  Eigen::MatrixXf rows(sample, dims);
-  parallel_for(sample, threads, [&](long begin, long end) {
-    Window w;
-    for (long i = begin; i < end; ++i) {
-      const Match& m = all[i * long(all.size()) / sample];
-      gather_example(examples[m.example], m.x, m.y, layout, w);
-      for (int j = 0; j < lanes; ++j)
-        for (int c = 0; c < 4; ++c) rows(i, 4 * j + c) = w.value[j][c] * root[j][c];
-      rows(i, dims - 2) = w.position.x(), rows(i, dims - 1) = w.position.y();
-    }
-  });
-  rows.rowwise() -= rows.colwise().mean().eval();
-  const Eigen::MatrixXf covariance = rows.transpose() * rows;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
-  axes_ = std::min(most_axes, dims);
-  const int stored = lanes + 1;  // the position takes a lane of its own
-  basis_.assign(long(axes_) * stored, Lane::Zero());
-  for (int a = 0; a < axes_; ++a) {
-    const auto vector = solver.eigenvectors().col(dims - 1 - a);
-    for (int j = 0; j < lanes; ++j)
-      for (int c = 0; c < 4; ++c) basis_[long(a) * stored + j][c] = vector[4 * j + c] * root[j][c];
-    basis_[long(a) * stored + lanes][0] = vector[dims - 2];
-    basis_[long(a) * stored + lanes][1] = vector[dims - 1];
-  }
-
+  find_axes(examples, layout, all, threads);
   std::vector<float> projected(all.size() * axes_);
   parallel_for(long(all.size()), threads, [&](long begin, long end) {
     Window w;
     for (long i = begin; i < end; ++i) {
-      gather_example(examples[all[i].example], all[i].x, all[i].y, layout, w);
-      project(w, layout, &projected[i * axes_]);
+      const LevelExample& e = examples[all[i].example];
+      gather(e.plane, e.coverage, all[i].x, all[i].y, layout, w);
+      project(w, &projected[i * axes_]);
     }
   });
   std::vector<int> order(all.size());
@@ -79,12 +49,52 @@ PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayou
   leaves_.push_back(int(entries_.size()));
 }
 
-void PatchTree::project(const Window& window, const PatchLayout& layout, float* to) const {
-  const int lanes = layout.window();
+// Principal components of a sample, as rows of root-weighted windows and the position.
+void PatchTree::find_axes(const std::vector<LevelExample>& examples, const PatchLayout& layout,
+                          const std::vector<Match>& all, int threads) {
+  const int r = layout.radius(), thin = (2 * r) / most_picks + 1;
+  std::vector<Lane> root;
+  for (int j = -(r / thin) * thin; j <= r; j += thin)
+    for (int i = -(r / thin) * thin; i <= r; i += thin)
+      for (int lane = 0; lane < layout.lanes; ++lane) {
+        const int pixel = (j + r) * layout.side + i + r;
+        picks_.push_back(pixel * layout.lanes + lane);
+        root.push_back((layout.gaussian[pixel] * float(thin * thin) * layout.active[lane]).sqrt());
+      }
+  const int lanes = int(picks_.size()), dims = lanes * 4 + 2;
+  const long sample = std::min<long>(all.size(), 3000);
+  Eigen::MatrixXf rows(sample, dims);
+  parallel_for(sample, threads, [&](long begin, long end) {
+    Window w;
+    for (long i = begin; i < end; ++i) {
+      const Match& m = all[i * long(all.size()) / sample];
+      gather(examples[m.example].plane, examples[m.example].coverage, m.x, m.y, layout, w);
+      for (int j = 0; j < lanes; ++j)
+        for (int c = 0; c < 4; ++c) rows(i, 4 * j + c) = w.value[picks_[j]][c] * root[j][c];
+      rows(i, dims - 2) = w.position.x(), rows(i, dims - 1) = w.position.y();
+    }
+  });
+  const Eigen::RowVectorXf mean = rows.colwise().mean();
+  rows.rowwise() -= mean;
+  const Eigen::MatrixXf covariance = rows.transpose() * rows;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
+  axes_ = std::min(most_axes, dims);
+  basis_.assign(long(axes_) * (lanes + 1), Lane::Zero());
+  for (int a = 0; a < axes_; ++a) {
+    const Eigen::VectorXf vector = solver.eigenvectors().col(dims - 1 - a);
+    Lane* basis = &basis_[long(a) * (lanes + 1)];
+    for (int j = 0; j < lanes; ++j)
+      for (int c = 0; c < 4; ++c) basis[j][c] = vector[4 * j + c] * root[j][c];
+    basis[lanes][0] = vector[dims - 2], basis[lanes][1] = vector[dims - 1];
+  }
+}
+
+void PatchTree::project(const Window& window, float* to) const {
+  const int lanes = int(picks_.size());
   const Lane* basis = basis_.data();
   for (int a = 0; a < axes_; ++a, basis += lanes + 1) {
     Lane sum = Lane::Zero();
-    for (int j = 0; j < lanes; ++j) sum += basis[j] * window.value[j];
+    for (int j = 0; j < lanes; ++j) sum += basis[j] * window.value[picks_[j]];
     to[a] = sum.sum() + basis[lanes][0] * window.position.x() + basis[lanes][1] * window.position.y();
   }
 }
@@ -125,9 +135,9 @@ int PatchTree::build(std::vector<int>& order, int begin, int end, const std::vec
   return node;
 }
 
-int PatchTree::leaf(const Window& window, const PatchLayout& layout) const {
+int PatchTree::leaf(const Window& window) const {
   float row[most_axes];
-  project(window, layout, row);
+  project(window, row);
   int node = 0;
   while (nodes_[node].axis >= 0)
     node = row[nodes_[node].axis] < nodes_[node].split ? nodes_[node].left : nodes_[node].right;
@@ -180,12 +190,16 @@ struct Searcher {
       if (!query.inside[at]) continue;
       gather(query, coverage, x, y, layout, window);
       Match& best = matches[at];
+      best.distance = std::numeric_limits<float>::infinity();
       if (best.example >= 0) {
-        const LevelExample& e = examples[best.example];
-        best.distance = distance(window, e.plane, best.x, best.y, layout, std::numeric_limits<float>::infinity());
+        const PatchPlane& e = examples[best.example].plane;
+        if (e.inside[e.index(best.x, best.y)])
+          best.distance = distance(window, e, best.x, best.y, layout, best.distance);
+        else
+          best = {};  // the finer level knows better where the foreground ends
       }
       if (!tree || tree->empty()) continue;
-      leaf[at] = tree->leaf(window, layout);
+      leaf[at] = tree->leaf(window);
       for (const Match* c = tree->begin(leaf[at]); c != tree->end(leaf[at]); ++c) offer(window, *c, best);
     }
   }

@@ -33,7 +33,7 @@ class PatchTree {
   PatchTree(const std::vector<LevelExample>& examples, const PatchLayout& layout, long most, int threads);
 
   /// The leaf that a window falls into.
-  int leaf(const Window& window, const PatchLayout& layout) const;
+  int leaf(const Window& window) const;
   /// Its windows; distances are not set.
   const Match* begin(int leaf) const { return &entries_[leaves_[leaf]]; }
   const Match* end(int leaf) const { return &entries_[leaves_[leaf + 1]]; }
@@ -45,11 +45,14 @@ class PatchTree {
     float split = 0;
     int left = 0, right = 0;  ///< nodes; of a leaf: left is its number
   };
+  void find_axes(const std::vector<LevelExample>& examples, const PatchLayout& layout, const std::vector<Match>& all,
+                 int threads);
   int build(std::vector<int>& order, int begin, int end, const std::vector<float>& rows, std::vector<Match>& all);
-  void project(const Window& window, const PatchLayout& layout, float* to) const;
+  void project(const Window& window, float* to) const;
 
   int axes_ = 0;
-  std::vector<Lane> basis_;  ///< axes x window, times the root of the weight
+  std::vector<int> picks_;   ///< lanes of a window that the components look at
+  std::vector<Lane> basis_;  ///< axes x (picks and one for the position), times the root of the weight
   std::vector<Node> nodes_;
   std::vector<Match> entries_;
   std::vector<int> leaves_;

@@ -188,10 +188,8 @@ class Optimizer {
           curve += a * d * d;
         }
       const double t = curve > 0 ? std::clamp(gain / curve, 0.0, 1.0) : 0.0;
-      if (getenv("DBG")) fprintf(stderr, "level %d t %.3f  ", level_, t);
       estimate_[s] = estimate_[s] + step * t;
     }
-    if (getenv("DBG")) fprintf(stderr, "obj %.6f\n", objective_.back().back());
   }
 
   double objective() const {
