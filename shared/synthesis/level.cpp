@@ -32,7 +32,8 @@ namespace {
 cv::Mat channel_plane(const ImagePyramid& pyramid, const PatchChannel& channel, int level) {
   const std::vector<cv::Mat>& p = pyramid.planes[channel.plane];
   if (!channel.detail || p[level].empty()) return p[level];
-  return p[level] - expand(level + 1 < int(p.size()) ? p[level + 1] : gaussian_pyramid(p[level], 2)[1], p[level].size());
+  return p[level] -
+         expand(level + 1 < int(p.size()) ? p[level + 1] : gaussian_pyramid(p[level], 2)[1], p[level].size());
 }
 
 double deviation(const std::vector<ImagePyramid>& examples, const PatchChannel& channel, int level) {

@@ -128,9 +128,12 @@ float compare(const Window& window, const PatchPlane& plane, int x, int y, const
 
 float distance(const Window& window, const PatchPlane& plane, int x, int y, const PatchLayout& layout, float enough) {
   switch (layout.lanes) {
-    case 1: return compare<1>(window, plane, x, y, layout, enough);
-    case 2: return compare<2>(window, plane, x, y, layout, enough);
-    default: return compare<3>(window, plane, x, y, layout, enough);
+    case 1:
+      return compare<1>(window, plane, x, y, layout, enough);
+    case 2:
+      return compare<2>(window, plane, x, y, layout, enough);
+    default:
+      return compare<3>(window, plane, x, y, layout, enough);
   }
 }
 

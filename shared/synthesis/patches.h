@@ -15,9 +15,9 @@ using Lane = Eigen::Array4f;
 
 /// What all windows of a level have in common.
 struct PatchLayout {
-  int side = 5;           ///< pixels
-  int lanes = 1;          ///< groups of four channels a pixel
-  std::vector<float> gaussian;  ///< side * side, sums to 1
+  int side = 5;                  ///< pixels
+  int lanes = 1;                 ///< groups of four channels a pixel
+  std::vector<float> gaussian;   ///< side * side, sums to 1
   std::vector<Lane> normalized;  ///< a lane group: 1 where the channel is normalised a window, else 0
   std::vector<Lane> factor;      ///< of normalised channels, after normalising: the weight's root
   std::vector<Lane> everywhere;  ///< 1 where a channel counts in the query's background too (the silhouette)

@@ -170,7 +170,8 @@ struct Searcher {
   }
 
   // What a pixel at (dx, dy) found, moved here.
-  void propagate(const Window& window, const std::vector<Match>& from, int x, int y, int dx, int dy, Match& best) const {
+  void propagate(const Window& window, const std::vector<Match>& from, int x, int y, int dx, int dy,
+                 Match& best) const {
     const int u = x + dx, v = y + dy;
     if (u < 0 || v < 0 || u >= query.width || v >= query.height) return;
     const long at = query.index(u, v);

@@ -17,7 +17,7 @@ struct Match {
 /// One example at one level.
 struct LevelExample {
   PatchPlane plane;
-  std::vector<cv::Mat> bands;  ///< of the synthesised planes, 32F: Laplacian band (the coarsest: the plane itself)
+  std::vector<cv::Mat> bands;   ///< of the synthesised planes, 32F: Laplacian band (the coarsest: the plane itself)
   std::vector<cv::Mat> values;  ///< of the synthesised planes, 32F: Gaussian level
   cv::Mat coverage;             ///< 32F, 0..1
   bool active = true;

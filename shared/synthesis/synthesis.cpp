@@ -35,8 +35,9 @@ std::vector<int> level_sides(const PatchImage& query, const SynthesisOptions& op
     sides.insert(sides.begin(), sides.front());
   for (size_t i = 0; i < sides.size(); ++i)
     if (sides[i] > std::max(1, shortest >> (sides.size() - 1 - i)))
-      throw UserError("A patch of " + std::to_string(sides[i]) +
-                      " pixels is larger than the image at its level; give smaller patches, fewer levels or a larger image.");
+      throw UserError(
+          "A patch of " + std::to_string(sides[i]) +
+          " pixels is larger than the image at its level; give smaller patches, fewer levels or a larger image.");
   return sides;
 }
 

@@ -30,22 +30,22 @@ struct PatchChannel {
 };
 
 struct SynthesisOptions {
-  std::vector<PatchChannel> channels;  ///< those of planes to be found take part once there is an estimate
-  std::vector<int> synthesized;        ///< indices of the planes to be found
+  std::vector<PatchChannel> channels;     ///< those of planes to be found take part once there is an estimate
+  std::vector<int> synthesized;           ///< indices of the planes to be found
   std::vector<int> patch_sizes{5, 7, 9};  ///< windows' sides in pixels, odd, coarse to fine: one a pyramid level
-  double position = 1;           ///< weight of the position relative to the foreground's centroid (4.1.4)
-  double silhouette = 1;         ///< weight of where a window is foreground
-  double size = 0;               ///< pixels that count 1 in positions; 0: root of the query's foreground
-  int max_iterations = 10;       ///< a level
-  double tolerance = 0.005;      ///< stops a level when an iteration gains less than this share of the objective
-  int longest_coarsest = 64;     ///< pixels: a larger coarsest level is halved, with the first patch size; 0: never
-  bool exact_search = false;     ///< compare every window with every other: slow, to judge the search by
-  int threads = 0;               ///< 0 = all cores; the result does not depend on it
+  double position = 1;                    ///< weight of the position relative to the foreground's centroid (4.1.4)
+  double silhouette = 1;                  ///< weight of where a window is foreground
+  double size = 0;                        ///< pixels that count 1 in positions; 0: root of the query's foreground
+  int max_iterations = 10;                ///< a level
+  double tolerance = 0.005;   ///< stops a level when an iteration gains less than this share of the objective
+  int longest_coarsest = 64;  ///< pixels: a larger coarsest level is halved, with the first patch size; 0: never
+  bool exact_search = false;  ///< compare every window with every other: slow, to judge the search by
+  int threads = 0;            ///< 0 = all cores; the result does not depend on it
 };
 
 /// Where the optimisation stands, for those who change the examples meanwhile.
 struct SynthesisState {
-  int level = 0;                       ///< 0 = finest
+  int level = 0;  ///< 0 = finest
   int levels = 1;
   const std::vector<cv::Mat>& planes;  ///< all planes of the query at this level, found ones as estimated
   const cv::Mat& mask;                 ///< 8U, of this level
@@ -69,8 +69,8 @@ struct SynthesisResult {
   cv::Mat source;               ///< 32SC2: the pixel (x, y) of that example at the patch's centre
   cv::Mat distance;             ///< 32F: root mean square difference of the patch, in standard deviations
   std::vector<std::vector<double>> objective;  ///< per level, coarse to fine, and iteration: mean log Sim (eq. 3)
-  std::vector<long> used;       ///< patches that each example gave in the end
-  std::vector<char> active;     ///< whether an example was still searched in the end
+  std::vector<long> used;                      ///< patches that each example gave in the end
+  std::vector<char> active;                    ///< whether an example was still searched in the end
 };
 
 /// Finds the planes that make every window of the query like a window of the
