@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "align/surface.h"
+#include "database/model_raster.h"
+
+namespace parts {
+
+/// The exhaustive search at the coarsest scale: how well a query fits a model at
+/// every whole-voxel shift at once, by convolution. (Thesis 3.3.1 compares
+/// occupied voxels; here each side's occupancy meets the other's distance field,
+/// max(0, 1 - (d / kReach)^2), so that a surface that is half a voxel off, or not
+/// quite the same, still counts.) For 16^3 voxels a convolution takes 50 us, the
+/// direct sum over all shifts 30 times as much.
+class Correlation {
+ public:
+  static constexpr int kSide = 16;        ///< voxels, of the cyclic grid
+  static constexpr int kModelSide = 9;    ///< voxels along the model's longest side
+  static constexpr double kWindow = 5.5;  ///< voxels around the region's centre that take part
+  static constexpr double kReach = 2.5;   ///< voxels
+
+  using Grid = std::vector<std::complex<float>>;  ///< kSide^3
+
+  /// A model in the grid's middle, transformed.
+  struct Model {
+    Grid near, occupied;
+    Vec3 center = Vec3::Zero();                       ///< of its box, model's frame
+    double cell = 1;                                  ///< a voxel's side, model's frame
+    Eigen::Vector3i range = Eigen::Vector3i::Zero();  ///< shifts from -range to range
+  };
+  static Model model(const ModelRaster& raster);
+
+  /// Two poses of the query (the real and the imaginary part), transformed.
+  struct Query {
+    Grid near, occupied;
+  };
+  struct Point {
+    Vec3 at;  ///< from the region's centre, query's frame
+    double weight;
+  };
+  /// @param to_voxels  query's frame to voxels: a rotation and a scale
+  static Query query(const std::vector<Point>& points, const Eigen::Matrix3d& to_voxels_one,
+                     const Eigen::Matrix3d& to_voxels_two);
+
+  /// The best shift of one pose: voxels from the model's centre to the region's.
+  struct Best {
+    Eigen::Vector3i shift = Eigen::Vector3i::Zero();
+    double similarity = -1;  ///< 0 to 2: the shares of each that lie on the other, added
+  };
+  static std::array<Best, 2> best(const Query& query, const Model& model);
+};
+
+}  // namespace parts
