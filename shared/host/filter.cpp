@@ -52,6 +52,24 @@ Parameter point(std::string name, const Vec3& value, std::string label, std::str
   return p;
 }
 
+Parameter text(std::string name, std::string value, std::string label, std::string help) {
+  Parameter p = make(Parameter::Kind::Text, std::move(name), std::move(label), std::move(help));
+  p.text = std::move(value);
+  return p;
+}
+
+Parameter open_file(std::string name, std::vector<std::string> endings, std::string label, std::string help) {
+  Parameter p = make(Parameter::Kind::OpenFile, std::move(name), std::move(label), std::move(help));
+  p.values = std::move(endings);
+  return p;
+}
+
+Parameter save_file(std::string name, std::string ending, std::string label, std::string help) {
+  Parameter p = make(Parameter::Kind::SaveFile, std::move(name), std::move(label), std::move(help));
+  p.values = {std::move(ending)};
+  return p;
+}
+
 Parameter current_layer(std::string name, std::string label, std::string help) {
   return make(Parameter::Kind::CurrentLayer, std::move(name), std::move(label), std::move(help));
 }

@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/mesh.h"
 #include "geometry/progress.h"
+#include "render/camera.h"
 
 class MeshModel;  // the host's layer
 
@@ -27,6 +29,13 @@ class Layer {
 
  private:
   MeshModel* model_;
+};
+
+/// A raster layer of the host's document: a registered image.
+struct RasterLayer {
+  std::string name;
+  std::string file;              ///< of its first plane, absolute
+  std::optional<Camera> camera;  ///< where it has one that can be used
 };
 
 /// A parameter as users and scripts see it. Made by the functions below.
@@ -51,6 +60,11 @@ Parameter number(std::string name, double value, double min, double max, std::st
 Parameter length(std::string name, double value, std::string label, std::string help);
 Parameter choice(std::string name, int value, std::vector<std::string> values, std::string label, std::string help);
 Parameter point(std::string name, const Vec3& value, std::string label, std::string help);
+Parameter text(std::string name, std::string value, std::string label, std::string help);
+/// @param endings  of the files to choose from, without the dot
+Parameter open_file(std::string name, std::vector<std::string> endings, std::string label, std::string help);
+/// @param ending  that the dialog proposes, without the dot
+Parameter save_file(std::string name, std::string ending, std::string label, std::string help);
 Parameter current_layer(std::string name, std::string label, std::string help);
 Parameter other_layer(std::string name, std::string label, std::string help);
 
@@ -74,6 +88,8 @@ class Inputs {
   virtual Vec3 point(const char* name) const = 0;
   virtual std::string text(const char* name) const = 0;  ///< Text and the files
   virtual Layer layer(const char* name) const = 0;
+  /// The current raster layer; nothing where there is none or it has no file.
+  virtual std::optional<RasterLayer> raster() const = 0;
 };
 
 /// What a filter wants done to the document. Nothing is done before the filter
@@ -83,20 +99,28 @@ struct Outcome {
     std::string name;
     Mesh mesh;
     bool visible = true;
+    std::optional<Camera> camera = {};  ///< through which its image was seen
+  };
+  struct NewRaster {
+    std::string name;
+    std::string file;  ///< of the image
+    Camera camera;
+    double distance;  ///< of what it shows, world units; see to_mlp()
   };
   struct Placement {
     Layer layer;
     Eigen::Matrix4d matrix;    ///< applied after the layer's own matrix
     bool to_vertices = false;  ///< into the coordinates, and the layer's matrix becomes the identity
   };
-  std::vector<NewLayer> layers;  ///< added in this order
-  int current = -1;              ///< of layers: becomes the current one
-  std::vector<Layer> hidden;     ///< a result replaces them on the screen
+  std::vector<NewLayer> layers;    ///< added in this order
+  std::vector<NewRaster> rasters;  ///< the last one becomes the current raster
+  int current = -1;                ///< of layers: becomes the current one
+  std::vector<Layer> hidden;       ///< a result replaces them on the screen
   std::vector<Placement> placed;
 };
 
-/// The menus that the suite's filters appear in.
-enum class Menu { Remeshing, Deformation, Placement };
+/// The menus that the suite's filters appear in. Creation: needs no layer.
+enum class Menu { Remeshing, Deformation, Placement, Creation };
 
 struct Filter {
   std::string name;  ///< "Group: Action"; never changes

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host/parameters.h"
 
+#include <QFileInfo>
 #include <cmath>
 #include <sstream>
 
 #include "geometry/error.h"
+#include "host/cameras.h"
 #include "host/layers.h"
 
 namespace parts::host {
@@ -166,6 +168,15 @@ Layer RichInputs::layer(const char* name) const {
   if (!layer || !document_.meshList.contains(layer))
     throw UserError("There is no layer for " + std::string(name) + "; load a mesh and choose it.");
   return Layer(layer);
+}
+
+std::optional<RasterLayer> RichInputs::raster() const {
+  const RasterModel* raster = const_cast<MeshDocument&>(document_).rm();
+  if (!raster || raster->planeList.isEmpty()) return {};
+  const QString file = raster->planeList.first()->fullName();
+  if (file.isEmpty()) return {};
+  return RasterLayer{raster->label().toStdString(), QFileInfo(file).absoluteFilePath().toStdString(),
+                     to_camera(raster->shot)};
 }
 
 }  // namespace parts::host

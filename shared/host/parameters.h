@@ -27,6 +27,7 @@ class RichInputs : public Inputs {
   Vec3 point(const char* name) const override;
   std::string text(const char* name) const override;
   Layer layer(const char* name) const override;
+  std::optional<RasterLayer> raster() const override;
 
  private:
   const Parameter& declaration(const char* name) const;

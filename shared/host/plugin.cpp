@@ -4,6 +4,7 @@
 #include <new>
 
 #include "geometry/error.h"
+#include "host/cameras.h"
 #include "host/layers.h"
 #include "host/parameters.h"
 
@@ -35,13 +36,22 @@ std::string guarded(Run&& run) {
 /// Adds the new layers, all or none, and then does what cannot fail.
 void commit(const Outcome& outcome, MeshDocument& document) {
   std::vector<MeshModel*> added;
+  std::vector<RasterModel*> rasters;
+  const int raster_before = document.rm() ? document.rm()->id() : -1;
   try {
     for (const Outcome::NewLayer& layer : outcome.layers) {
       added.push_back(document.addNewMesh("", QString::fromStdString(layer.name), false));
       write_layer(layer.mesh, *added.back());
+      if (layer.camera) set_camera(*layer.camera, *added.back());
+    }
+    for (const Outcome::NewRaster& raster : outcome.rasters) {
+      rasters.push_back(document.addNewRaster());
+      write_raster(raster, *rasters.back());
     }
   } catch (...) {
     for (MeshModel* layer : added) document.delMesh(layer);
+    for (RasterModel* raster : rasters) document.delRaster(raster);
+    document.setCurrentRaster(raster_before);
     throw;
   }
   for (const Outcome::Placement& p : outcome.placed) place_layer(p.matrix, p.to_vertices, *p.layer.model());
@@ -74,6 +84,9 @@ MeshFilterInterface::FilterClass Plugin::getClass(QAction* action) {
     case Menu::Placement:
       menus = Normal | Layer;
       break;
+    case Menu::Creation:  // alone: the host offers only this menu in a document without meshes
+      menus = MeshCreation;
+      break;
   }
   // Makes the host load the current layer's texture files after the run; said
   // only then, as it fails on those of other layers (their names are relative).
@@ -90,6 +103,7 @@ int Plugin::postCondition(QAction* action) const {
 }
 
 void Plugin::initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) {
+  textured_ = false;
   declare(filter(action).parameters(scene_of(document)), document, list);
 }
 

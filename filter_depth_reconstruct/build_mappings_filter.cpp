@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+
+#include "filters.h"
+#include "mappings/build_mappings.h"
+
+namespace parts {
+namespace {
+
+using namespace host;
+
+std::vector<Parameter> parameters(const Scene&) {
+  const ExampleOptions options;
+  return {
+      open_file("Models", {"mlp"}, "Models",
+                "The models of the class: a MeshLab project (.mlp), or the path of a folder of .ply, .obj, .off and "
+                ".stl files. Textures and vertex colours are shown."),
+      save_file("Output", "mlp", "Database",
+                "The project to write (.mlp). The images go into a folder beside it, named after it."),
+      integer("Width", options.width, 8, 8192, "Width (pixels)", "Columns of the images."),
+      integer("Height", options.height, 8, 8192, "Height (pixels)", "Rows of the images."),
+      text(
+          "Views", "0,0", "Views",
+          "From where the models are seen: yaw,pitch in degrees, separated by semicolons, as in \"0,0; 30,0; -30,15\". "
+          "Positive yaw shows the model's left side, positive pitch looks from above."),
+      point("Up", options.up, "Up",
+            "The direction in which the models stand. Where the class's preset has another one, this default gives way "
+            "to it."),
+      point("Front", options.front, "Front", "The direction in which the models face; as for Up."),
+      point(
+          "Light", options.light, "Light",
+          "The direction to the light as the camera sees it: x to the right, y up, z towards the viewer. Choose it as "
+          "in the images that are to be reconstructed."),
+      number("Ambient", options.ambient, 0, 1, "Ambient light", "The share of light that comes from everywhere."),
+      flag("BackSide", options.back, "Back side",
+           "Stores the depth of the farthest surface too, from which back sides are reconstructed."),
+  };
+}
+
+/// The value of a direction; at its default, what the class says.
+Vec3 direction(const Inputs& inputs, const char* name, const Vec3& fallback, const std::optional<Vec3>& of_class) {
+  const Vec3 given = inputs.point(name);
+  return of_class && (given - fallback).norm() < 1e-6 ? *of_class : given;
+}
+
+Outcome apply(const Inputs& inputs, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  ExampleOptions options;
+  options.width = inputs.integer("Width");
+  options.height = inputs.integer("Height");
+  const std::vector<View> views = parse_views(inputs.text("Views"));
+  options.light = inputs.point("Light");
+  options.ambient = inputs.number("Ambient");
+  options.back = inputs.flag("BackSide");
+  const ModelDatabase models(inputs.text("Models"), progress);
+  const ClassPreset preset = read_class_preset(models.path());
+  const ExampleOptions fallback;
+  options.up = direction(inputs, "Up", fallback.up, preset.up);
+  options.front = direction(inputs, "Front", fallback.front, preset.front);
+
+  const MappingsReport report = build_mappings(models, views, inputs.text("Output"), options, progress);
+  log_value(progress, "objects", report.objects);
+  log_value(progress, "views", double(views.size()));
+  log_value(progress, "examples", report.examples);
+  log_value(progress, "megabytes", report.megabytes);
+  log_value(progress, "folder", report.folder);
+  log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return {};
+}
+
+}  // namespace
+
+host::Filter build_mappings_filter() {
+  return {"Examples: Build Mapping Database",
+          "build_mappings",
+          Menu::Creation,
+          std::string("Renders the models of a class from some views and stores what is seen, with its depth, as a "
+                      "<b>mapping database</b>: a project that opens in MeshLab and from which the depth of an image "
+                      "is reconstructed. All models are framed alike. Models need not be stored as examples: the "
+                      "reconstruction can render them as well, from any view.") +
+              depth_reference,
+          parameters,
+          apply};
+}
+
+}  // namespace parts

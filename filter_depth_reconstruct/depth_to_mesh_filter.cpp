@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "filters.h"
+#include "geometry/error.h"
+#include "raster/depth_mesh.h"
+#include "raster/raster_io.h"
+#include "raster/texture.h"
+
+namespace parts {
+namespace {
+
+using namespace host;
+
+constexpr double any = 1e9;
+
+std::vector<Parameter> parameters(const Scene&) {
+  return {
+      open_file("Depth", {"tif", "tiff", "pfm", "png"}, "Depth",
+                "The depth raster: a 32-bit float TIFF or PFM, or a 16-bit PNG. Depth grows away from the camera; 0, "
+                "infinity and NaN are background."),
+      open_file("Image", {"png", "jpg", "jpeg", "tif", "tiff", "bmp"}, "Image",
+                "An image of the same view, in any resolution, that becomes the texture. Empty: no texture."),
+      open_file("BackDepth", {"tif", "tiff", "pfm", "png"}, "Back depth",
+                "The depth of the farthest surface at each pixel. With it the result is one closed solid. Empty: the "
+                "front only."),
+      number("DepthScale", 1, -any, any, "Depth scale",
+             "World units that one unit of the depth rasters stands for: 0.001 for millimetres that become metres. "
+             "Negative for orthographic rasters that grow towards the camera."),
+      number("PixelSize", 1, 1e-9, any, "Pixel size",
+             "Width of a pixel in world units, in an orthographic image. Not used with a focal length."),
+      number("FocalLength", 0, 0, any, "Focal length (pixels)",
+             "Of the pinhole camera that saw the depth, whose axis meets the middle of the image. 0: an orthographic "
+             "image."),
+      length("MaxJump", 0, "Tear at jumps over",
+             "Neighbouring pixels whose depths differ by more are not connected (with a back depth: that have more "
+             "empty space than this between them). 0: 5 % of the depth range, but at least six pixels' width."),
+      save_file("TextureFile", "png", "Texture file",
+                "Where the texture is written. Empty: the image itself is the texture where MeshLab can show it as it "
+                "is, or else a new file beside the depth raster. Inputs are never replaced."),
+  };
+}
+
+struct Input {
+  cv::Mat depth, back;
+  std::string image_file;
+  Image image;
+};
+
+Input read(const Inputs& inputs, Progress& progress) {
+  const std::string depth = inputs.text("Depth"), back = inputs.text("BackDepth");
+  const double scale = inputs.number("DepthScale");
+  if (depth.empty()) throw UserError("No depth raster is named; choose a float TIFF, a PFM or a 16-bit PNG.");
+  if (scale == 0) throw UserError("DepthScale is 0, which makes all depths 0; give another value.");
+  progress.stage("Reading", 0, 20);
+  Input in;
+  in.depth = read_depth(depth, scale);
+  if (!back.empty()) in.back = read_depth(back, scale);
+  in.image_file = inputs.text("Image");
+  if (in.image_file.empty()) return in;
+  progress.at(0.5);
+  in.image = read_image(in.image_file);
+  const cv::Size d = in.depth.size(), i = in.image.color.size();
+  const double skew = std::abs(double(i.width) * d.height - double(i.height) * d.width);
+  if (skew > std::max({i.width, i.height, d.width, d.height}))
+    throw UserError("The image has " + std::to_string(i.width) + " x " + std::to_string(i.height) +
+                    " pixels and the depth raster " + std::to_string(d.width) + " x " + std::to_string(d.height) +
+                    "; give an image of the same view, with the same proportions.");
+  return in;
+}
+
+/// The file that the mesh names as its texture.
+std::string texture_of(const Input& in, const Inputs& inputs) {
+  TextureTarget target{inputs.text("TextureFile"),
+                       inputs.text("Depth"),
+                       {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
+  if (target.file.empty() && shows_as_texture(in.image_file, in.image))
+    return std::filesystem::absolute(in.image_file).lexically_normal().string();
+  return write_texture(in.image.color, in.image.mask, target);
+}
+
+Outcome apply(const Inputs& inputs, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const double pixel_size = inputs.number("PixelSize"), focal = inputs.number("FocalLength");
+  const Input in = read(inputs, progress);
+  const Camera camera = raster_camera(in.depth.size(), pixel_size, focal);
+  Progress meshing = progress.part(20, 95);
+  DepthMesh result = depth_to_mesh(in.depth, in.back, camera, {inputs.length("MaxJump")}, meshing);
+  progress.stage("Texture", 95, 100);
+
+  Outcome outcome;
+  Camera seen = camera;
+  if (in.image_file.empty()) {
+    result.mesh.wedges.clear();
+  } else {
+    const double finer = double(in.image.color.cols) / in.depth.cols;
+    seen = raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
+    result.mesh.textures = {texture_of(in, inputs)};
+    log_value(progress, "texture", result.mesh.textures[0]);
+    const double distance = camera.project(result.mesh.bounds().center()).z();
+    outcome.rasters.push_back(
+        {std::filesystem::path(in.image_file).filename().string(), result.mesh.textures[0], seen, distance});
+  }
+  log_value(progress, "width", in.depth.cols);
+  log_value(progress, "height", in.depth.rows);
+  log_value(progress, "max_jump", result.max_jump);
+  log_value(progress, "torn_pixels", double(result.torn));
+  log_value(progress, "dropped_faces", result.dropped_faces);
+  if (!in.back.empty()) log_value(progress, "wall_faces", result.walls);
+  if (!in.back.empty()) log_value(progress, "pixels_without_back", double(result.back_before));
+  log_value(progress, "vertices", result.mesh.vertex_count());
+  log_value(progress, "faces", result.mesh.face_count());
+  log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  outcome.layers.push_back({in.back.empty() ? "Depth surface" : "Depth solid", std::move(result.mesh), true, seen});
+  outcome.current = 0;
+  return outcome;
+}
+
+}  // namespace
+
+host::Filter depth_to_mesh_filter() {
+  return {"Examples: Depth Map to Textured Mesh",
+          "depth_to_mesh",
+          Menu::Creation,
+          std::string("Turns a depth raster into a mesh, a vertex a pixel: orthographic or through a pinhole camera, "
+                      "torn where the depth jumps, with an image of the same view as its texture. With a second "
+                      "raster, of the depth behind, front and back become one closed solid. The camera is kept with "
+                      "the mesh, and the image becomes a raster layer, so that MeshLab's own filters can project it.") +
+              depth_reference,
+          parameters,
+          apply};
+}
+
+}  // namespace parts

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "host/filter.h"
+
+namespace parts {
+
+/// One a source file: name, help, parameters, and what is done with them.
+host::Filter build_mappings_filter();
+host::Filter depth_to_mesh_filter();
+
+/// Ends the help of each.
+extern const char* const depth_reference;
+
+}  // namespace parts
