@@ -47,14 +47,14 @@ ClassModels::ClassModels(const ModelDatabase& database, const std::vector<View>&
                          Progress& progress)
     : database_(database), options_(options) {
   check_options(options);
-  measure(views, progress);
+  const std::string first_flaw = measure(views, progress);
   if (entries_.empty())
-    throw UserError("None of the models in \"" + database.path() + "\" can be used; see the log for why.");
+    throw UserError("None of the models in \"" + database.path() + "\" can be used; the first: " + first_flaw);
   settle_frame(progress);
 }
 
-/// Reads all models, a few at a time, and measures them.
-void ClassModels::measure(const std::vector<View>& views, Progress& progress) {
+/// Reads all models, a few at a time, and measures them. @return what is wrong with the first that is left out
+std::string ClassModels::measure(const std::vector<View>& views, Progress& progress) {
   std::vector<Eigen::Matrix3d> rotations;
   for (const View& view : views) rotations.push_back(view_rotation(view, options_.up, options_.front));
   const int batch = thread_count(options_.threads);
@@ -63,6 +63,7 @@ void ClassModels::measure(const std::vector<View>& views, Progress& progress) {
     std::string why;
     Entry entry{};
   };
+  std::string first_flaw;
   for (int first = 0; first < database_.size(); first += batch) {
     progress.at(double(first) / database_.size());
     std::vector<Read> reads(std::size_t(std::min(batch, database_.size() - first)));
@@ -84,6 +85,7 @@ void ClassModels::measure(const std::vector<View>& views, Progress& progress) {
     for (std::size_t r = 0; r < reads.size(); ++r) {
       const int model = first + int(r);
       if (!reads[r].mesh) {
+        if (first_flaw.empty()) first_flaw = reads[r].why;
         progress.log("skipped: " + database_.name(model) + " (" + reads[r].why + ")");
         continue;
       }
@@ -93,6 +95,7 @@ void ClassModels::measure(const std::vector<View>& views, Progress& progress) {
       keep(size() - 1, std::move(*reads[r].mesh));
     }
   }
+  return first_flaw;
 }
 
 void ClassModels::settle_frame(Progress& progress) {

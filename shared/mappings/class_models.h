@@ -35,7 +35,7 @@ class ClassModels {
     std::unique_ptr<ClassModel> loaded;
     double bytes = 0;
   };
-  void measure(const std::vector<View>& views, Progress& progress);
+  std::string measure(const std::vector<View>& views, Progress& progress);
   void settle_frame(Progress& progress);
   void keep(int i, Mesh mesh);
   void forget_beyond_bound(int but);

@@ -24,10 +24,8 @@ double angle_between(const View& a, const View& b) {
 
 Eigen::Vector2d extent(const Mesh& mesh, const Vec3& center, const Eigen::Matrix3d& rotation) {
   Eigen::Vector2d most(0, 0);
-  for (const Vec3& v : mesh.vertices) {
-    const Eigen::Vector2d q = (rotation.topRows<2>() * (v - center)).cwiseAbs();
-    if (q.allFinite()) most = most.cwiseMax(q);
-  }
+  for (const Triangle& f : mesh.faces)
+    for (int v : f) most = most.cwiseMax((rotation.topRows<2>() * (mesh.vertices[v] - center)).cwiseAbs());
   return most;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QFileInfo>
 
 #include "geometry/error.h"
 #include "host/plugin.h"
@@ -115,6 +116,38 @@ TEST_F(HostPlugin, LayersAreAddedAndInputsHidden) {
   EXPECT_FALSE(document.meshList[0]->isVisible());
   EXPECT_TRUE(document.meshList[2]->isVisible());
   EXPECT_FALSE(document.meshList[3]->isVisible());
+}
+
+TEST_F(HostPlugin, RasterLayers) {
+  Camera camera;
+  camera.width = 60, camera.height = 80, camera.center = {30, 40};
+  next = [&](const Inputs& in, Progress&) {
+    EXPECT_FALSE(in.raster()) << "there is none";
+    Outcome out;
+    out.layers = {{"Result", triangle(), true, camera}};
+    out.rasters = {{"photo", "some/photo.png", camera, 5}};
+    return out;
+  };
+  ASSERT_TRUE(apply());
+  ASSERT_EQ(document.rasterList.size(), 1);
+  ASSERT_TRUE(document.rm());
+  EXPECT_EQ(document.rm()->label(), "photo");
+  EXPECT_TRUE(document.meshList[2]->hasDataMask(MeshModel::MM_CAMERA));
+  EXPECT_TRUE(document.meshList[2]->cm.shot.IsValid());
+  next = [](const Inputs& in, Progress&) {
+    EXPECT_TRUE(in.raster());
+    EXPECT_EQ(in.raster()->name, "photo");
+    EXPECT_TRUE(QFileInfo(QString::fromStdString(in.raster()->file)).isAbsolute());
+    EXPECT_EQ(in.raster()->camera->width, 60);
+    return Outcome();
+  };
+  EXPECT_TRUE(apply());
+  document.rm()->shot = Shotm();
+  next = [](const Inputs& in, Progress&) {
+    EXPECT_FALSE(in.raster()->camera) << "an image that nobody has aligned";
+    return Outcome();
+  };
+  EXPECT_TRUE(apply());
 }
 
 TEST_F(HostPlugin, FailuresLeaveASentenceAndNothingElse) {

@@ -107,12 +107,14 @@ def work_folder():
     return pathlib.Path(tempfile.mkdtemp(prefix="run-", dir=os.environ.get("WORK")))
 
 
-def run(meshes, steps, outputs=None, matrices=None, timeout=120, cores=None, memory=None):
+def run(meshes, steps, outputs=None, matrices=None, timeout=120, cores=None, memory=None, project=None,
+        save_project=False):
     """Loads meshes (Mesh objects or files), runs the steps, saves layers.
 
     outputs: {name: layer index, or None for the current one}; the default
     saves the current layer as "out". matrices: of the layers, by index.
     cores, memory (bytes of address space): the program gets no more.
+    project: a project to load instead of meshes; save_project: as out.mlp.
     """
     folder = work_folder()
     files = []
@@ -122,7 +124,9 @@ def run(meshes, steps, outputs=None, matrices=None, timeout=120, cores=None, mem
             mesh = folder / f"in{i}.ply"
         files.append(pathlib.Path(mesh))
     command = [str(SERVER)]
-    if matrices:
+    if project:
+        command += ["-p", str(project)]
+    elif matrices:
         write_project(folder / "in.mlp", [(str(f), matrices.get(i, np.eye(4))) for i, f in enumerate(files)])
         command += ["-p", str(folder / "in.mlp")]
     else:
@@ -132,6 +136,8 @@ def run(meshes, steps, outputs=None, matrices=None, timeout=120, cores=None, mem
     script.extend(steps)
     (folder / "script.mlx").write_text("<!DOCTYPE FilterScript>\n" + xml.tostring(script, encoding="unicode"))
     command += ["-s", str(folder / "script.mlx")]
+    if save_project:
+        command += ["-w", str(folder / "out.mlp")]
     for name, layer in ({"out": None} if outputs is None else outputs).items():
         command += ["-o", str(folder / f"{name}.ply")] + ([] if layer is None else ["-l", str(layer)])
         command += ["-m", "vc", "vq", "vf", "ff", "wt"]

@@ -23,6 +23,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "mlx"))
 import lib  # noqa: E402
 import nasty  # noqa: E402
+import raster_cases  # noqa: E402
 import shapes  # noqa: E402
 from lib import box, template  # noqa: E402
 
@@ -220,6 +221,7 @@ def numbers():
 def all_cases():
     for part in (documents, damaged, sizes, placements, constraints, volumes, numbers):
         yield from part()
+    yield from raster_cases.all_cases(Case)
 
 
 # --- One case.
@@ -244,6 +246,9 @@ def checked(case, result):
         moving = case.result == "placed" and i == 0
         if not moving and not same(result.mesh(f"in{i}_after"), layer):
             return "changed", f"layer {i} is not as it was"
+    if case.result == "database":
+        files = [p.get("value") for p in case.steps[0] if p.get("name") == "Output"]
+        return ("ok", f"{result.figures()['examples']} examples") if pathlib.Path(files[0]).exists() else ("bad", "")
     mesh = result.mesh("out")
     if case.result == "placed":
         matrix = np.array(result.figures()["matrix"].split(), float)
@@ -257,7 +262,7 @@ def checked(case, result):
 
 
 def outcome(case):
-    saved = {"out": None, **{f"in{i}_after": i for i in range(len(case.layers))}}
+    saved = {} if case.result == "database" else {"out": None, **{f"in{i}_after": i for i in range(len(case.layers))}}
     result = lib.run(case.layers, case.steps, saved, timeout=60, memory=case.memory)
     if result.code is None:
         return "hang", ""
@@ -265,7 +270,7 @@ def outcome(case):
     if not started or "parameterSet.size() == required.size()" in result.errors:
         return "host", "asks for more meshes" if not started else "aborts: the script must list every parameter"
     if result.code == 0:
-        if not (result.folder / "out.ply").exists():
+        if saved and not (result.folder / "out.ply").exists():
             return "silent", "nothing saved"
         return checked(case, result)
     if result.code != 255:
