@@ -80,8 +80,10 @@ void log_report(const ComposeReport& r, const Mesh& composed, Progress& progress
   log_value(progress, "loops_a", r.loops_a);
   log_value(progress, "loops_b", r.loops_b);
   log_value(progress, "loops_joined", r.loops_joined);
+  log_value(progress, "pieces_joined", r.pieces_joined);
   log_value(progress, "loops_capped", r.loops_capped);
   log_value(progress, "loops_open", r.loops_open);
+  log_value(progress, "reversed_b", r.reversed_b);
   log_value(progress, "faces", composed.face_count());
   log_value(progress, "seconds", r.seconds);
 }
@@ -131,6 +133,10 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
   ComposeResult result = compose(part_a, part_b, options, progress);
   log_report(result.report, result.composed, progress);
+  if (options.stitch && result.report.loops_joined + result.report.pieces_joined == 0)
+    log_value(progress, "warning",
+              "Nothing was stitched, as no border of one model faces one of the other; move the models farther into "
+              "each other, or mark parts that lie on both sides of the place where they meet.");
 
   Outcome outcome;
   outcome.layers.push_back({"Composed", std::move(result.composed)});

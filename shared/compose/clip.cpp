@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "geometry/attributes.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/parallel.h"
 
 namespace parts {
@@ -171,6 +172,35 @@ double root(const Work& w, const ClipField& field, int i, int j) {
   return std::clamp(t, kMargin, 1 - kMargin);
 }
 
+/// Takes out pieces with cut borders that are no larger than a crumb and of
+/// which nothing is pinned: the field's noise where it runs along the surface.
+void drop_crumbs(const Work& w, double crumb, int whole_vertices, std::vector<char>& keep,
+                 std::vector<std::array<int, 2>>& border) {
+  DisjointSets pieces(w.mesh.vertex_count());
+  for (std::size_t f = 0; f < keep.size(); ++f)
+    if (keep[f])
+      for (int k : {1, 2}) pieces.unite(w.mesh.faces[f][0], w.mesh.faces[f][k]);
+  std::unordered_map<int, Box> boxes;  // of pieces that the cut made
+  for (const auto& e : border)
+    if (e[0] >= whole_vertices) boxes[pieces.find(e[0])];
+  for (std::size_t f = 0; f < keep.size(); ++f) {
+    if (!keep[f]) continue;
+    const auto piece = boxes.find(pieces.find(w.mesh.faces[f][0]));
+    if (piece == boxes.end()) continue;
+    if (w.pinned[f] > 0)
+      boxes.erase(piece);
+    else
+      piece->second.extend(w.mesh.face_box(int(f)));
+  }
+  const auto is_crumb = [&](int vertex) {
+    const auto piece = boxes.find(pieces.find(vertex));
+    return piece != boxes.end() && piece->second.sizes().maxCoeff() < crumb;
+  };
+  for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = keep[f] && !is_crumb(w.mesh.faces[f][0]);
+  border.erase(std::remove_if(border.begin(), border.end(), [&](const auto& e) { return is_crumb(e[0]); }),
+               border.end());
+}
+
 }  // namespace
 
 Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const ClipField& field, int threads) {
@@ -232,6 +262,7 @@ Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const Cli
     }
   }
   for (char d : w.dead) keep.push_back(!d);
+  drop_crumbs(w, field.crumb, whole_vertices, keep, border);
 
   Clipped out;
   std::vector<int> old_vertex, old_face, number(w.mesh.vertices.size(), -1);

@@ -12,6 +12,7 @@ struct ClipField {
   std::function<double(const Vec3&)> value;       ///< kept where positive
   std::function<bool(const Mesh&, int)> crosses;  ///< whether the zero set may pass through a face
   double max_edge = 0;                            ///< world units; crossed faces are split to this before
+  double crumb = 0;                               ///< world units; smaller pieces that the cut makes are dropped
 };
 
 /// A clipped model. Border half-edges run in their face's direction; their ends

@@ -48,6 +48,7 @@ Clipped clip_model(const Model& model, bool of_a, const Decision& d, const Trans
     for_each_voxel(grid, m, f, [&](std::size_t v) { near |= transition.near(v, of_a); });
     return near;
   };
+  field.crumb = 1.5 * grid.size;
   field.max_edge = grid.size * (cut == Cut::Thesis ? 0.5 : 1.0);
   return clip(mesh, pinned, field, threads);
 }
@@ -58,7 +59,7 @@ struct Attempt {
   Clipped a, b;
   Joined joined;
   ComposeReport report;
-  double unmatched = 0;  ///< length of borders that face none, world units
+  double flaws = 0;  ///< world units: borders that face none, and a voxel for each pair of crossing faces
 };
 
 std::unique_ptr<Attempt> attempt(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
@@ -73,16 +74,19 @@ std::unique_ptr<Attempt> attempt(Model& a, Model& b, const Box& volume, int reso
   t->a = clip_model(a, true, t->decision, transition, options.cut, options.threads);
   progress.at(0.5);
   t->b = clip_model(b, false, t->decision, transition, options.cut, options.threads);
-  progress.stage("Stitching", 75, 95);
+  progress.stage("Stitching and smoothing", 75, 95);
   t->joined = join_parts(a, t->a, b, t->b);
   t->report.loops_a = int(t->joined.loops_a.size()), t->report.loops_b = int(t->joined.loops_b.size());
-  if (options.stitch)
-    t->unmatched = stitch_parts(t->joined, (3 + 2 * t->decision.reach) * t->report.voxel_size, t->report);
+  if (!options.stitch) return t;
+  const double voxel = t->report.voxel_size;
+  t->flaws = stitch_parts(t->joined, (3 + 2 * t->decision.reach) * voxel, t->report);
+  progress.at(0.6);
+  t->flaws += voxel * double(finish_seam(t->joined, voxel, options.cut, options.smoothing, options.threads));
   return t;
 }
 
 /// At the user's resolution; or at the natural one, coarser while the models do
-/// not meet, finer while their constraints share a voxel or borders face none.
+/// not meet, finer while their constraints share a voxel or the seam has flaws.
 std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, const ComposeOptions& options,
                                       Progress& progress) {
   constexpr int kCoarsest = 24, kFinest = 384, kFiner = 2;
@@ -104,9 +108,8 @@ std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, con
         resolution = std::max(kCoarsest, resolution * 2 / 3);
         continue;
       }
-      if (!best || t->unmatched < best->unmatched) best = std::move(t);
-      const bool one_sided = best->report.loops_a == 0 || best->report.loops_b == 0;
-      if (best->unmatched == 0 || one_sided || resolution >= kFinest) break;
+      if (!best || t->flaws < best->flaws) best = std::move(t);
+      if (best->flaws == 0 || resolution >= kFinest) break;
       resolution = std::min(kFinest, resolution * 8 / 5), ++finer;
     } catch (const SharedVoxel&) {
       if (best) break;
@@ -162,11 +165,10 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   if (turned) flip_orientation(b.prepared.mesh);
 
   const std::unique_ptr<Attempt> best = best_attempt(a, b, volume, options, progress);
-  progress.stage("Smoothing the seam", 95, 100);
+  progress.stage("Finishing", 95, 100);
   ComposeResult result;
   result.report = best->report;
   result.report.reversed_b = best->report.reversed_b != turned;
-  if (options.stitch) finish_seam(best->joined, best->report.voxel_size, options.cut, options.smoothing);
   if (options.transition_surface)
     result.transition =
         transition_surface(best->decision.voxels, best->decision.labels, options.cut == Cut::Thesis ? 0 : 6);

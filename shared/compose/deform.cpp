@@ -61,6 +61,7 @@ std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fix
     Progress share = progress.part(100 * frame / frames, 100 * (frame + 1) / frames);
     results.push_back(compose({mesh, fixed, "the fixed part"},
                               {posed(mesh, transform(pose, t)), moving, "the moving part"}, options, share));
+    results.back().clipped_a = {}, results.back().clipped_b = {};  // a copy a frame is too much
   }
   return results;
 }

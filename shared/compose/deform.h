@@ -20,6 +20,7 @@ struct RigidPose {
 /// Bends a model by rigid parts (thesis 3.3.3): a clone takes the pose, and the
 /// two are composed, `fixed` kept on the model and `moving` on its clone.
 /// @param frames  1 = the pose; N = N results from rest (an unchanged copy) to the pose
+/// @return results without their clipped parts
 /// @throws UserError, Cancelled  as compose()
 std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fixed, const std::vector<char>& moving,
                                   const RigidPose& pose, int frames, const ComposeOptions& options, Progress& progress);

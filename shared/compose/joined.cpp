@@ -3,6 +3,7 @@
 
 #include "compose/seam.h"
 #include "compose/stitch.h"
+#include "compose/untangle.h"
 #include "geometry/attributes.h"
 
 namespace parts {
@@ -82,9 +83,11 @@ double stitch_parts(Joined& j, double max_gap, ComposeReport& report) {
       if (!joined[i]) r.push_back(loops[i]);
     return r;
   };
+  const ZipperedPieces pieces =
+      zipper_pieces(j.mesh, rest(j.loops_a, joined_a), rest(j.loops_b, joined_b), max_gap, j.like);
+  report.pieces_joined = pieces.strips, report.seam_length += pieces.length;
   double unmatched = 0;
-  for (const Loop& loop :
-       zipper_pieces(j.mesh, rest(j.loops_a, joined_a), rest(j.loops_b, joined_b), max_gap, j.like)) {
+  for (const Loop& loop : pieces.open) {
     unmatched += loop_length(j.mesh, loop);
     bool closed = loop.closed;
     for (int v : loop.vertices) closed = closed && j.closed[v];
@@ -97,7 +100,7 @@ double stitch_parts(Joined& j, double max_gap, ComposeReport& report) {
   return unmatched;
 }
 
-void finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothing) {
+long finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothing, int threads) {
   if (cut == Cut::Refined)
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
   else
@@ -106,7 +109,12 @@ void finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothin
   if (cut == Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
               smoothing.weight);
-  if (j.mesh.vertex_normal.empty()) return;
+  std::vector<char> movable(j.mesh.vertices.size(), 0);
+  for (std::size_t v = 0; v < movable.size(); ++v)
+    movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
+  constexpr int kRounds = 15;
+  const long crossings = untangle(j.mesh, movable, kRounds, threads);
+  if (j.mesh.vertex_normal.empty()) return crossings;
   // Normals are the inputs' own but around the seam.
   std::vector<Eigen::Vector3f> normals = j.mesh.vertex_normal;
   update_normals(j.mesh);
@@ -119,6 +127,7 @@ void finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothin
   }
   for (std::size_t v = 0; v < normals.size(); ++v)
     if (!changed[v]) j.mesh.vertex_normal[v] = normals[v];
+  return crossings;
 }
 
 }  // namespace parts

@@ -28,8 +28,9 @@ Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipp
 /// borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, ComposeReport& report);
 
-/// Removes the seam's slivers, evens it (Refined), smooths it, and mends the
-/// normals around it.
-void finish_seam(Joined& joined, double voxel, Cut cut, const SeamSmoothing& smoothing);
+/// Removes the seam's slivers, evens it (Refined), smooths it, parts faces that
+/// cross, and mends the normals around it.
+/// @return pairs of faces at the seam that still cross
+long finish_seam(Joined& joined, double voxel, Cut cut, const SeamSmoothing& smoothing, int threads);
 
 }  // namespace parts

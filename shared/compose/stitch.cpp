@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/attributes.h"
 
@@ -70,27 +71,57 @@ std::vector<int> unrolled(const Loop& loop, int start) {
   return v;
 }
 
+/// A contour by arc length.
+class Polyline {
+ public:
+  Polyline(const Mesh& mesh, const Loop& loop) : closed_(loop.closed) {
+    for (int v : loop.vertices) points_.push_back(mesh.vertices[v]);
+    if (closed_) points_.push_back(points_.front());
+    at_.push_back(0);
+    for (std::size_t i = 1; i < points_.size(); ++i) at_.push_back(at_.back() + (points_[i] - points_[i - 1]).norm());
+  }
+  double length() const { return at_.back(); }
+  Vec3 point(double at) const {
+    if (closed_ && at > length()) at -= length();
+    const std::size_t i = std::upper_bound(at_.begin(), at_.end(), at) - at_.begin();
+    if (i >= points_.size()) return points_.back();
+    return points_[i - 1] + (at - at_[i - 1]) / (at_[i] - at_[i - 1]) * (points_[i] - points_[i - 1]);
+  }
+  /// The unit direction to the point a tenth of the length on.
+  Vec3 ahead(double at) const {
+    const double step = 0.1 * length();
+    if (!closed_) at = std::min(at, length() - step);
+    return (point(at + step) - point(at)).normalized();
+  }
+  /// Where the point nearest to x is.
+  double nearest(const Vec3& x) const {
+    double best = 0, least = std::numeric_limits<double>::max();
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const Vec3 d = points_[i] - points_[i - 1];
+      const double t = std::clamp((x - points_[i - 1]).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
+      if (const double r = (points_[i - 1] + t * d - x).squaredNorm(); r < least)
+        least = r, best = at_[i - 1] + t * (at_[i] - at_[i - 1]);
+    }
+    return best;
+  }
+
+ private:
+  bool closed_;
+  std::vector<Vec3> points_;
+  std::vector<double> at_;
+};
+
 }  // namespace
 
 double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b) {
   constexpr int kStarts = 32;
-  const auto ahead = [&](const Loop& l, int k) {
-    const int step = std::max(1, l.size() / 10);
-    int from = k, to = k + step;
-    if (l.closed)
-      to %= l.size();
-    else if (to >= l.size())
-      to = l.size() - 1, from = std::max(0, to - step);
-    return Vec3((mesh.vertices[l.vertices[to]] - mesh.vertices[l.vertices[from]]).normalized());
-  };
+  const Polyline pa(mesh, a), pb(mesh, b);
   double sum = 0;
-  const int starts = std::min(kStarts, a.size());
-  for (int s = 0; s < starts; ++s) {
-    const int i = int(long(s) * a.size() / starts);
-    const int j = nearest_pair(mesh, {a.vertices[i]}, b.vertices)[1];
-    sum += ahead(a, i).dot(ahead(b, j));
+  for (int s = 0; s < kStarts; ++s) {
+    const double at = pa.length() * s / kStarts;
+    sum += pa.ahead(at).dot(pb.ahead(pb.nearest(pa.point(at))));
   }
-  return sum / starts;
+  return sum / kStarts;
 }
 
 namespace {
@@ -140,8 +171,8 @@ void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& li
   zipper_lines(mesh, unrolled(a, i), unrolled(back, j), like);
 }
 
-std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
-                                const std::vector<int>& like) {
+ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
+                             const std::vector<int>& like) {
   const std::vector<Place> in_a = places(a), in_b = places(b);
   const auto nearest = [&](const std::vector<Place>& from, const std::vector<Loop>& from_loops,
                            const std::vector<Place>& to, const std::vector<Loop>& to_loops) {
@@ -170,6 +201,7 @@ std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const st
     return first + at;
   };
 
+  ZipperedPieces pieces;
   std::vector<std::array<int, 2>> open;  // half-edges that faces have no opposite for
   std::vector<char> filled_a(in_a.size(), 0), filled_b(in_b.size(), 0), starts(in_a.size(), 0), ends(in_a.size(), 0);
   for (int k = 0; k < int(in_a.size()); ++k) {
@@ -186,6 +218,7 @@ std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const st
       filled_b[to_b[next] - in_b[to_b[next]].at + at] = 1;
     std::reverse(q.begin(), q.end());
     zipper_lines(mesh, p, q, like);
+    ++pieces.strips, pieces.length += loop_length(mesh, {p, false});
     starts[k] = 1, ends[next] = 1;
   }
   const auto leave_open = [&](const std::vector<Place>& all, const std::vector<Loop>& loops,
@@ -202,7 +235,8 @@ std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const st
     const int va = a[in_a[k].loop].vertices[in_a[k].at], vb = b[in_b[to_b[k]].loop].vertices[in_b[to_b[k]].at];
     open.push_back(starts[k] ? std::array<int, 2>{va, vb} : std::array<int, 2>{vb, va});
   }
-  return trace_loops(open);
+  pieces.open = trace_loops(open);
+  return pieces;
 }
 
 void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like) {

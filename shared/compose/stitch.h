@@ -16,12 +16,17 @@ double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b);
 /// mesh, dressed as face like[v] of the nearest contour vertex v.
 void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like);
 
+struct ZipperedPieces {
+  std::vector<Loop> open;  ///< contours that are left, of a's, b's and bridges' half-edges
+  int strips = 0;          ///< pieces that were zippered
+  double length = 0;       ///< of a's part in them, world units
+};
+
 /// Zippers contours piece by piece where they do not pair off one to one (two
 /// of a facing one of b): bridges between mutually nearest vertices, no longer
 /// than max_gap, part them into pieces, and facing pieces are zippered.
-/// @return the contours that are still open, of a's, b's and bridges' half-edges
-std::vector<Loop> zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
-                                const std::vector<int>& like);
+ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
+                             const std::vector<int>& like);
 
 /// Closes a contour with triangles between its own vertices, ear by ear, the
 /// best-shaped first.

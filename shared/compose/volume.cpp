@@ -43,24 +43,33 @@ void add_outer_pieces(Model& model, bool of_a, const Box& volume, JointVoxels& v
   }
 }
 
-void check_memory(const Model& a, const Model& b, const Grid& grid, int resolution) {
+/// About how many bytes a grid over the volume takes: a dozen bit sets, and
+/// what the graph holds a surface voxel, of a sheet dilated by `reach` too.
+double memory_estimate(const Model& a, const Model& b, const Grid& grid) {
   const Box box = grid.box();
   const double most = box.diagonal().squaredNorm();  // of a face's area, within the grid
   double surface = 0;
   for (const Model* m : {&a, &b})
     for (int f = 0; f < m->prepared.mesh.face_count(); ++f)
       if (box.intersects(m->prepared.mesh.face_box(f))) surface += std::min(area(m->prepared.mesh, f), most);
-  // A dozen bit sets, and what the graph holds a surface voxel.
   const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
-  const double bytes = 2.5 * cells + 400.0 * std::min(cells, 2.5 * surface / (grid.size * grid.size));
-  const double have = available_memory();
+  return 2.5 * cells + 600.0 * std::min(cells, 2.5 * surface / (grid.size * grid.size));
+}
+
+void check_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
+  const Grid grid = Grid::over(volume, resolution);
+  const double bytes = memory_estimate(a, b, grid), have = available_memory();
+  const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
   if (cells < 9e15 && (have <= 0 || bytes < 0.8 * have)) return;
+  int fits = 1, fails = resolution;
+  while (fails - fits > 1) {
+    const int middle = fits + (fails - fits) / 2;
+    (memory_estimate(a, b, Grid::over(volume, middle)) < 0.7 * have ? fits : fails) = middle;
+  }
   const auto gigabytes = [](double x) { return std::to_string(std::max(1L, std::lround(std::min(x, 9e17) / 1e9))); };
-  const int fits = std::max(1, int(std::min<double>(resolution, std::max({grid.dims[0], grid.dims[1], grid.dims[2]})) *
-                                   std::cbrt(0.7 * have / bytes)));
   throw UserError("A resolution of " + std::to_string(resolution) + " needs about " + gigabytes(bytes) +
                   " GB of memory and " + gigabytes(have) + " GB are free; choose a Resolution of " +
-                  std::to_string(fits) + " or less, or 0.");
+                  std::to_string(fits) + " or less.");
 }
 
 }  // namespace
@@ -116,7 +125,7 @@ int natural_resolution(const Model& a, const Model& b, const Box& volume) {
 JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, int threads) {
   constexpr int kMost = 1 << 20;  // more would not fit any memory, nor an int
   const Grid grid = Grid::over(volume, std::min(resolution, kMost));
-  check_memory(a, b, grid, resolution);
+  check_memory(a, b, volume, std::min(resolution, kMost));
   const auto inside = [&](Model& m) {
     std::vector<char> keep(m.keep.size(), 0);
     for (std::size_t f = 0; f < keep.size(); ++f)

@@ -125,7 +125,7 @@ TEST(ZipperPieces, OneContourFacesTwo) {
   ASSERT_EQ(a.size(), 2u);
   ASSERT_EQ(b.size(), 1u);
   const int before = mesh.face_count();
-  const std::vector<Loop> rest = zipper_pieces(mesh, a, b, 0.5, like);
+  const std::vector<Loop> rest = zipper_pieces(mesh, a, b, 0.5, like).open;
   EXPECT_GT(mesh.face_count(), before + 40);
   const MeshCheck c = check(mesh);
   EXPECT_EQ(c.nonmanifold_edges + c.inconsistent_edges, 0) << to_string(c);
@@ -144,7 +144,7 @@ TEST(ZipperPieces, OneContourFacesTwo) {
 TEST(ZipperPieces, NothingToFaceLeavesAllOpen) {
   Mesh mesh;
   add_cup(mesh, 12, 0.1, true);
-  const std::vector<Loop> rest = zipper_pieces(mesh, boundary(mesh), {}, 1, faces_at_vertices(mesh));
+  const std::vector<Loop> rest = zipper_pieces(mesh, boundary(mesh), {}, 1, faces_at_vertices(mesh)).open;
   ASSERT_EQ(rest.size(), 1u);
   EXPECT_EQ(rest[0].size(), 12);
   EXPECT_EQ(mesh.face_count(), 12);
