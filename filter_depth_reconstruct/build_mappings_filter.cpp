@@ -12,9 +12,10 @@ using namespace host;
 std::vector<Parameter> parameters(const Scene&) {
   const ExampleOptions options;
   return {
-      open_file("Models", {"mlp"}, "Models",
-                "The models of the class: a MeshLab project (.mlp), or the path of a folder of .ply, .obj, .off and "
-                ".stl files. Textures and vertex colours are shown."),
+      open_file(
+          "Models", {"mlp", "ply", "obj", "off", "stl"}, "Models",
+          "The models of the class: a MeshLab project (.mlp), or a folder of .ply, .obj, .off and .stl files, for "
+          "which any of them stands. Textures and vertex colours are shown."),
       save_file("Output", "mlp", "Database",
                 "The project to write (.mlp). The images go into a folder beside it, named after it."),
       integer("Width", options.width, 8, 8192, "Width (pixels)", "Columns of the images."),

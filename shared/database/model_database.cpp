@@ -106,11 +106,14 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a < b;  // equal but for case or leading zeros
 }
 
-ModelDatabase::ModelDatabase(const std::string& path, Progress& progress) : path_(path) {
+ModelDatabase::ModelDatabase(const std::string& given, Progress& progress) : path_(given) {
+  std::error_code error;
+  if (is_mesh_file(given) && fs::is_regular_file(given, error))  // file dialogs choose no folders
+    path_ = fs::absolute(given).parent_path().string();
+  const std::string& path = path_;
   if (path.empty())
     throw UserError("No model database is named; choose a MeshLab project (.mlp) or a folder of models.");
   const std::string database = "The model database \"" + path + "\" ";
-  std::error_code error;
   std::map<std::string, int> used;
   if (fs::is_directory(path, error)) {
     for (const fs::path& file : mesh_files(path))

@@ -17,8 +17,9 @@ namespace parts {
 class ModelDatabase {
  public:
   /// Models that are not there are left out and logged, "skipped: name (why)".
+  /// @param given  the project or folder; a mesh file stands for its folder
   /// @throws UserError  no such folder or project, or no model in it
-  ModelDatabase(const std::string& path, Progress& progress);
+  ModelDatabase(const std::string& given, Progress& progress);
 
   const std::string& path() const { return path_; }
   int size() const { return int(models_.size()); }

@@ -55,6 +55,14 @@ QStringList to_list(const std::vector<std::string>& values) {
   return list;
 }
 
+/// As the host's file dialogs want them: it joins them with blanks.
+QStringList to_patterns(const std::vector<std::string>& endings) {
+  QStringList list;
+  for (const std::string& ending : endings) list << "*." + QString::fromStdString(ending);
+  for (const QString& pattern : QStringList(list)) list << pattern.toUpper();
+  return list;
+}
+
 std::string shown(double value) {
   std::ostringstream out;
   out << value;
@@ -99,10 +107,10 @@ void declare(const std::vector<Parameter>& parameters, MeshDocument& document, R
         list.addParam(RichString(name, text, label, help));
         break;
       case Kind::OpenFile:
-        list.addParam(RichOpenFile(name, text, to_list(p.values), label, help));
+        list.addParam(RichOpenFile(name, text, to_patterns(p.values), label, help));
         break;
       case Kind::SaveFile:
-        list.addParam(RichSaveFile(name, text, to_list(p.values).value(0), label, help));
+        list.addParam(RichSaveFile(name, text, to_patterns(p.values).value(0), label, help));
         break;
       case Kind::CurrentLayer:
         list.addParam(layer_parameter(p, current_of(document), document, label, help));

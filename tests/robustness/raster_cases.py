@@ -125,7 +125,7 @@ def build_mappings(case, folder):
     empty.mkdir()
     yield row("an empty folder", SENTENCE, Models=empty)
     yield row("a folder that is not there", SENTENCE, Models=folder / "nowhere")
-    yield row("a mesh file", SENTENCE, Models=models / "m0.ply")
+    yield row("a mesh file, for its folder", OK, Models=models / "m0.ply")
     yield project("empty", "")
     yield project("words", "these are words")
     yield project("cut", '<!DOCTYPE MeshLabDocument><MeshLabProject><MeshGroup><MLMesh filename="models/m0.ply"')

@@ -118,6 +118,13 @@ TEST_F(ModelDatabaseTest, NamesAndSkipsWhatCannotBeUsed) {
   EXPECT_EQ(check(*stray).nonfinite_vertices + check(*stray).unused_vertices, 0);
 }
 
+TEST_F(ModelDatabaseTest, AMeshFileStandsForItsFolder) {
+  for (const char* name : {"a.off", "b.off"}) file(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const ModelDatabase d(path("b.off"), progress_);
+  EXPECT_EQ(d.size(), 2);
+  EXPECT_TRUE(std::filesystem::equivalent(d.path(), folder_));
+}
+
 TEST_F(ModelDatabaseTest, AnEmptyDatabaseIsASentence) {
   EXPECT_NE(sentence(folder_.string()).find("choose another folder"), std::string::npos);
   EXPECT_NE(sentence(path("none")).find("does not exist"), std::string::npos);
