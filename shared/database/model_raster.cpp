@@ -10,7 +10,7 @@ namespace {
 constexpr int kMargin = 4;  // voxels around the model's box
 
 /// Fills the voxels with their nearest samples: from those that hold one, in two
-/// sweeps over the grid, each voxel taking over what its neighbours know.
+/// sweeps over the grid, each voxel handing on what it knows.
 class Filler {
  public:
   Filler(RasterLevel& level, const std::vector<RasterPoint>& samples, double reach)
@@ -44,17 +44,17 @@ class Filler {
     const auto from = [&](int d) { return way > 0 ? 0 : n[d] - 1; };
     for (int z = from(2); z >= 0 && z < n[2]; z += way)
       for (int y = from(1); y >= 0 && y < n[1]; y += way)
-        for (int x = from(0); x >= 0 && x < n[0]; x += way) ask_earlier(x, y, z, way);
+        for (int x = from(0); x >= 0 && x < n[0]; x += way) hand_on(x, y, z, way);
   }
-  /// The 13 neighbours that the sweep has passed.
-  void ask_earlier(int x, int y, int z, int way) {
-    const int here = index(x, y, z);
-    const Eigen::Vector3f at = center(x, y, z);
+  /// To the 13 neighbours that the sweep has yet to pass.
+  void hand_on(int x, int y, int z, int way) {
+    const std::uint16_t sample = level_.nearest[index(x, y, z)];
+    if (sample == RasterLevel::kFar) return;
     for (int k = 0; k < 13; ++k) {
-      const int a = x + way * (k % 3 - 1), b = y + way * (k / 3 % 3 - 1), c = z + way * (k / 9 - 1);
+      const int a = x - way * (k % 3 - 1), b = y - way * (k / 3 % 3 - 1), c = z - way * (k / 9 - 1);
       if (a < 0 || b < 0 || c < 0 || a >= level_.dims[0] || b >= level_.dims[1] || c >= level_.dims[2]) continue;
-      const std::uint16_t sample = level_.nearest[index(a, b, c)];
-      if (sample != RasterLevel::kFar && sample != level_.nearest[here]) offer(here, at, sample);
+      const int there = index(a, b, c);
+      if (level_.nearest[there] != sample) offer(there, center(a, b, c), sample);
     }
   }
 
@@ -86,14 +86,15 @@ ModelRaster rasterize_model(const Mesh& model, int levels) {
   raster.area = surface.area();
   for (const Sample& s : sample_surface(surface, ModelRaster::kSamples))
     raster.samples.push_back({s.point.cast<float>(), s.normal.cast<float>()});
-  Eigen::AlignedBox3f box;
-  for (const auto& t : surface.triangles)
-    for (const Vec3& v : t) box.extend(v.cast<float>());
-  // The coarsest level knows the way from everywhere.
-  for (int l = 0; l < levels; ++l)
-    raster.levels.push_back(
-        nearest_samples(raster.samples, box, ModelRaster::kCoarsest << l, l == 0 ? 1e4 : RasterLevel::kReach));
+  for (int l = 0; l < levels; ++l) add_level(raster);
   return raster;
+}
+
+void add_level(ModelRaster& raster) {
+  const int l = int(raster.levels.size());
+  // The coarsest level knows the way from everywhere.
+  raster.levels.push_back(
+      nearest_samples(raster.samples, raster.box(), ModelRaster::kCoarsest << l, l == 0 ? 1e4 : RasterLevel::kReach));
 }
 
 Closest RasterTarget::closest(const Vec3& p, int&) const {

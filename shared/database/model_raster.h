@@ -61,6 +61,8 @@ struct ModelRaster {
 /// @pre the model has faces with area and finite coordinates (ModelDatabase::load)
 /// @throws UserError  no area
 ModelRaster rasterize_model(const Mesh& model, int levels);
+/// Adds the next finer level.
+void add_level(ModelRaster& raster);
 
 /// A level as a surface that answers where it is closest, in about 20 ns.
 class RasterTarget : public ClosestPoint {

@@ -12,7 +12,7 @@
 namespace parts {
 namespace {
 
-constexpr int kGridPoints = 8000, kGridBorder = 40000, kGridCells = 64;
+constexpr int kGridPoints = 8000, kGridBorder = 40000, kGridCells = 48;
 constexpr double kGridFocus = 1.5, kGridReach = 3;  // radii of the region that the grid covers beyond it
 
 const char kNothingLeft[] =
@@ -139,7 +139,7 @@ void QuerySurface::make_grid(const SearchQuery& query) {
     for (std::size_t i = known_; i < points_.size(); i += step) points_[kept++] = points_[i];
     points_.resize(kept);
   }
-  grid_ = nearest_samples(points_, box, kGridCells, 16);
+  grid_ = nearest_samples(points_, box, kGridCells, 12);
 }
 
 QuerySurface::Known QuerySurface::nearest(const Vec3& p, RasterPoint& found) const {

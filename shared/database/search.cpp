@@ -50,6 +50,11 @@ struct Entry {
   double score() const { return places.empty() ? INFINITY : places[0].score; }
 };
 
+void keep_best(std::vector<Place>& places, std::size_t most) {
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.score < b.score; });
+  if (places.size() > most) places.resize(most);
+}
+
 Pose inverse(const Pose& p) {
   Pose q;
   q.rotation = p.rotation.transpose();
@@ -67,11 +72,11 @@ class Searcher {
         progress_(progress),
         threads_(thread_count(options.threads)),
         levels_(std::clamp(options.levels, 1, int(std::size(kScales)))),
-        cache_(database) {}
+        cache_(database, {levels_, options.cache, options.threads}) {}
 
   std::vector<Candidate> run() {
     progress_.stage("Reading the models", 0, 50);
-    cache_.fill({levels_, options_.cache, options_.threads}, progress_);
+    cache_.fill(progress_);
     prepare();
     progress_.stage("Comparing everywhere", 50, 75);
     search_everywhere();
@@ -199,14 +204,10 @@ void Searcher::search_everywhere() {
                   const auto best = Correlation::best(queries[q], entries[i]->spectrum);
                   for (int k = 0; k < 2; ++k) propose(*entries[i], scale, turns[2 * q + k], best[k]);
                 }
+                keep_best(entries[i]->places, kPlaces);
               });
   }
   progress_.stage("Comparing the best places", 65, 75);
-  for (Entry& e : entries_) {
-    std::stable_sort(e.places.begin(), e.places.end(),
-                     [](const Place& a, const Place& b) { return a.score < b.score; });
-    if (int(e.places.size()) > kPlaces) e.places.resize(kPlaces);
-  }
   refine(0);
 }
 
@@ -269,6 +270,7 @@ void Searcher::refine(int level) {
   const int grid = std::min(std::max(level, 1), levels_ - 1);
   run_tasks(int(entries_.size()), threads_, progress_, [&](int i, const std::function<void()>& poll) {
     Entry& e = entries_[i];
+    if (grid > 1) cache_.complete(e.model);
     const RasterTarget target(*e.raster, grid);
     for (Place& p : e.places) {
       IcpOptions icp_options;
@@ -280,9 +282,7 @@ void Searcher::refine(int level) {
       p.pose = icp(samples_[level], target, p.pose, icp_options, poll).pose;
       p.score = score(p.pose, *e.raster, target, false, level);
     }
-    std::stable_sort(e.places.begin(), e.places.end(),
-                     [](const Place& a, const Place& b) { return a.score < b.score; });
-    if (int(e.places.size()) > scale.places) e.places.resize(std::size_t(scale.places));
+    keep_best(e.places, std::size_t(scale.places));
   });
 }
 

@@ -89,7 +89,7 @@ Class busts(const fs::path& folder, int count) {
 struct Found {
   bool right = false;
   double error = 0;  ///< from place to place, as a share of the ball's radius
-  Times first, later;
+  Times time;
   int model = -1;
 };
 
@@ -127,7 +127,7 @@ Found run(const Class& c, const Task& task, int i, const fs::path& folder) {
   SearchOptions options;
   Stopwatch watch;
   candidates = find_similar(query, database, options, silent);
-  found.first = {watch.wall(), watch.cpu()};
+  found.time = {watch.wall(), watch.cpu()};
   found.model = model_of[std::size_t(candidates[0].model)];
   found.error = (candidates[0].placement * c.place(found.model) - motion * at).norm() / (radius * scale);
   found.right = found.error < 0.5;
@@ -144,7 +144,7 @@ void measure(const Class& c, const std::vector<Task>& tasks, int most, const fs:
     for (int i = 0; i < n; ++i) {
       const Found f = run(c, task, i, folder);
       right += f.right;
-      errors.push_back(f.error), wall.push_back(f.first.wall), cpu.push_back(f.first.cpu);
+      errors.push_back(f.error), wall.push_back(f.time.wall), cpu.push_back(f.time.cpu);
       if (!f.right)
         table.note(task.name + ": " + fs::path(c.files[std::size_t(i)]).stem().string() + " from " +
                    fs::path(c.files[std::size_t(f.model)]).stem().string() + ", error " + text(f.error));

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "database/model_cache.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "geometry/mesh_io.h"
+#include "support/shapes.h"
+
+namespace parts {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool same(const ModelRaster& a, const ModelRaster& b) {
+  const ModelCache::Key key{1, 2, 3, 4, a.levels.size()};
+  return ModelCache::encode(a, key) == ModelCache::encode(b, key);
+}
+
+class Cache : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("model_cache_test_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+    for (unsigned i = 0; i < 3; ++i) put("m" + std::to_string(i) + ".ply", i);
+  }
+  void TearDown() override {
+    fs::permissions(folder_, fs::perms::owner_all);
+    fs::remove_all(folder_);
+  }
+  void put(const std::string& name, unsigned seed) const {
+    write_mesh(test::noisy_sphere(Vec3(1, 2, 3), 2, 3, 0.3, seed), (folder_ / name).string());
+  }
+  /// A fill by a new run; how many it had to make.
+  int fill(int levels = 2, bool files = true, int kept = 100) {
+    database_ = std::make_unique<ModelDatabase>(folder_.string(), progress_);
+    const ModelDatabase& database = *database_;
+    cache_ = std::make_unique<ModelCache>(database, ModelCache::Options{levels, files, 2, kept});
+    cache_->fill(progress_);
+    for (int i = 0; i < database.size(); ++i)
+      if (cache_->raster(i)) {
+        EXPECT_TRUE(same(*cache_->raster(i), rasterize_model(database.load(i), int(cache_->raster(i)->levels.size()))));
+      }
+    return cache_->made();
+  }
+  fs::path file(int i) const {
+    std::vector<fs::path> files;
+    for (const auto& e : fs::directory_iterator(folder_ / ".model-cache")) files.push_back(e.path());
+    std::sort(files.begin(), files.end());
+    return files.at(std::size_t(i));
+  }
+  int file_count() const {
+    return int(std::distance(fs::directory_iterator(folder_ / ".model-cache"), fs::directory_iterator()));
+  }
+
+  bool fills_undisturbed() try {
+    Progress silent;
+    const ModelDatabase database(folder_.string(), silent);
+    bool good = true;
+    for (int k = 0; k < 3; ++k) {
+      ModelCache cache(database, {2, true, 1});
+      cache.fill(silent);
+      for (int m = 0; m < 3; ++m) good = good && cache.raster(m);
+      std::error_code error;
+      if (k == 0) fs::remove_all(folder_ / ".model-cache", error);
+    }
+    return good;
+  } catch (...) {
+    return false;
+  }
+
+  fs::path folder_;
+  std::vector<std::string> log_;
+  Progress progress_{{}, [this](const std::string& line) { log_.push_back(line); }};
+  std::unique_ptr<ModelDatabase> database_;
+  std::unique_ptr<ModelCache> cache_;
+};
+
+TEST_F(Cache, IsMadeOnce) {
+  EXPECT_EQ(fill(), 3);
+  EXPECT_EQ(file_count(), 3);
+  EXPECT_EQ(fill(), 0);
+  EXPECT_EQ(fill(3), 3) << "other levels";
+  EXPECT_EQ(fill(3), 0);
+}
+
+TEST_F(Cache, IsMadeAgainForAnotherModel) {
+  fill();
+  put("m1.ply", 77);
+  EXPECT_EQ(fill(), 1);
+  // The same size, the same time, another surface.
+  const auto time = fs::last_write_time(folder_ / "m1.ply");
+  put("m1.ply", 78);
+  fs::last_write_time(folder_ / "m1.ply", time);
+  EXPECT_EQ(fill(), 1);
+  fs::rename(folder_ / "m0.ply", folder_ / "m9.ply");
+  EXPECT_EQ(fill(), 1);
+}
+
+TEST_F(Cache, NeverTrustsADamagedFile) {
+  fill();
+  const std::string good = contents(file(0));
+  std::vector<std::string> bad{"",
+                               "x",
+                               good.substr(0, good.size() - 1),
+                               good + "x",
+                               good.substr(0, 40),
+                               std::string(good.size(), '\0'),
+                               contents(file(1))};
+  test::Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    bad.push_back(good);
+    bad.back()[std::size_t(random.below(int(good.size())))] ^= char(1 << random.below(8));
+  }
+  for (const std::string& bytes : bad) {
+    std::ofstream(file(0), std::ios::binary) << bytes;
+    EXPECT_EQ(fill(), 1);
+    EXPECT_EQ(contents(file(0)), good) << "mended";
+  }
+}
+
+TEST_F(Cache, ChecksWhatAForgedFileHolds) {
+  fill();
+  const ModelRaster& good = *cache_->raster(0);
+  const ModelCache::Key key{1, 2, 3, 4, 2};
+  ASSERT_TRUE(ModelCache::decode(ModelCache::encode(good, key), key));
+  const auto refused = [&](const auto& change) {
+    ModelRaster r = good;
+    change(r);
+    return !ModelCache::decode(ModelCache::encode(r, key), key);
+  };
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.size = 0; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.origin.x() = NAN; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.samples.clear(); }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.samples[5].at.y() = INFINITY; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].nearest[7] = std::uint16_t(r.samples.size()); }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[0].nearest[7] = RasterLevel::kFar; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims[2] += 1; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims = {-1, -1, 1}; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims = {1000000, 1000000, 1000000}; }));
+  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels.pop_back(); }));
+}
+
+TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
+  std::ofstream(folder_ / ".model-cache") << "a file in its place";  // root may write anywhere
+  EXPECT_EQ(fill(), 3);
+  EXPECT_EQ(fill(), 3);
+  EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("cache: ", 0) == 0; }),
+            2);
+  EXPECT_EQ(contents(folder_ / ".model-cache"), "a file in its place");
+}
+
+TEST_F(Cache, CanBeTurnedOff) {
+  EXPECT_EQ(fill(2, false), 3);
+  EXPECT_FALSE(fs::exists(folder_ / ".model-cache"));
+}
+
+TEST_F(Cache, RunsAtTheSameTimeDoNoHarm) {
+  std::vector<pid_t> children;
+  for (int i = 0; i < 3; ++i) {
+    const pid_t child = fork();
+    if (child == 0) _exit(fills_undisturbed() ? 0 : 1);
+    ASSERT_GT(child, 0);
+    children.push_back(child);
+  }
+  for (pid_t child : children) {
+    int status = 1;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+  fill();
+  EXPECT_EQ(fill(), 0);
+  EXPECT_EQ(file_count(), 3) << "no drafts are left";
+}
+
+TEST_F(Cache, KeepsOnlyCoarseLevelsOfManyModels) {
+  fill(3, true, 2);
+  EXPECT_EQ(cache_->raster(1)->levels.size(), 2u);
+  cache_->complete(1);
+  const ModelDatabase& database = *database_;
+  EXPECT_TRUE(same(*cache_->raster(1), rasterize_model(database.load(1), 3)));
+  fs::remove_all(folder_ / ".model-cache");
+  cache_->complete(2);
+  EXPECT_TRUE(same(*cache_->raster(2), rasterize_model(database.load(2), 3)));
+}
+
+}  // namespace
+}  // namespace parts
