@@ -5,6 +5,7 @@
 #include "compose/stitch.h"
 #include "compose/untangle.h"
 #include "geometry/attributes.h"
+#include "geometry/pinches.h"
 
 namespace parts {
 
@@ -105,6 +106,7 @@ long finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothin
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
   else
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.2 * voxel, 0.2 * voxel});
+  for (int v : split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
   if (cut == Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,

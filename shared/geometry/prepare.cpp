@@ -7,6 +7,7 @@
 #include "geometry/attributes.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
+#include "geometry/pinches.h"
 
 namespace parts {
 namespace {
@@ -109,10 +110,17 @@ Prepared prepare(const Mesh& mesh) {
   Prepared p;
   Mesh welded = mesh;
   const std::vector<int> first = first_at_same_place(mesh);
-  for (std::size_t v = 0; v < first.size(); ++v) p.welded_vertices += first[v] != int(v);
+  std::vector<char> shared(first.size(), 0);
+  for (std::size_t v = 0; v < first.size(); ++v)
+    if (first[v] != int(v)) shared[first[v]] = 1, ++p.welded_vertices;
   for (Triangle& f : welded.faces)
     for (int& v : f) v = first[v];
-  p.mesh = take_faces(welded, real_faces(welded), nullptr, &p.source_face);
+  std::vector<int> old_vertex;
+  p.mesh = take_faces(welded, real_faces(welded), &old_vertex, &p.source_face);
+  // What only touched at a vertex is two surfaces again.
+  std::vector<char> touching;
+  for (int v : old_vertex) touching.push_back(shared[v]);
+  p.welded_vertices -= int(split_pinches(p.mesh, touching).size());
   p.dropped_faces = mesh.face_count() - p.mesh.face_count();
   const std::vector<HalfEdge> edges = sorted_half_edges(p.mesh);
   find_components(edges, p);

@@ -17,7 +17,8 @@ struct Prepared {
   int reversed_faces = 0;   ///< turned to agree with their neighbours
 };
 
-/// Welds vertices with bit-identical positions, drops faces that are none, and
+/// Welds vertices with bit-identical positions (surfaces that only touch in one
+/// stay apart), drops faces that are none, and
 /// turns faces so that neighbours across manifold edges agree (within a
 /// component the larger area wins). Zero-area faces stay: they keep a surface
 /// closed. Attributes follow; of welded vertices the first's stay.
