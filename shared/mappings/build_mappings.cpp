@@ -7,10 +7,12 @@
 #include <set>
 
 #include "geometry/error.h"
+#include "geometry/mesh_io.h"
 #include "geometry/mlp_project.h"
 #include "mappings/class_models.h"
 #include "mappings/class_preset.h"
 #include "mappings/mlp_camera.h"
+#include "raster/depth_mesh.h"
 #include "raster/raster_io.h"
 
 namespace parts {
@@ -53,7 +55,7 @@ class Draft {
 
   /// Where to write a file, and where it will be.
   std::string now(const std::string& name) {
-    files_.push_back(name);
+    files_.insert(name);
     return (part_ / name).string();
   }
   std::string later(const std::string& name) const { return (folder_ / name).string(); }
@@ -85,16 +87,20 @@ class Draft {
     std::error_code error;
     if (!fs::exists(output_, error)) return files;
     try {
-      for (const MlpRaster& raster : read_mlp(output_.string()).rasters)
-        for (const MlpPlane& plane : raster.planes)
-          if (const fs::path file = plane.file; file.parent_path() == folder_.lexically_normal()) files.insert(file);
+      const auto add = [&](const fs::path& file) {
+        if (file.parent_path() == folder_.lexically_normal()) files.insert(file);
+      };
+      const MlpProject old = read_mlp(output_.string());
+      for (const MlpMesh& mesh : old.meshes) add(mesh.file);
+      for (const MlpRaster& raster : old.rasters)
+        for (const MlpPlane& plane : raster.planes) add(plane.file);
     } catch (const UserError&) {  // it could not be read: nothing is known to be its
     }
     return files;
   }
 
   fs::path output_, folder_, part_;
-  std::vector<fs::path> files_;
+  std::set<fs::path> files_;
 };
 
 void check_output(const std::string& output, const std::string& models) {
@@ -106,12 +112,14 @@ void check_output(const std::string& output, const std::string& models) {
   if (fs::is_directory(path, error)) throw UserError(project + "is a folder; give a file that ends in .mlp.");
   if (!fs::exists(path, error)) return;
   if (fs::equivalent(path, models, error)) throw UserError(project + "is the model database; give another name.");
-  bool models_inside = true;
+  bool mappings = false;
   try {
-    models_inside = !read_mlp(output).meshes.empty();
+    const MlpProject old = read_mlp(output);
+    mappings = std::any_of(old.rasters.begin(), old.rasters.end(),
+                           [](const MlpRaster& r) { return !r.file_of(plane::kDepth).empty(); });
   } catch (const UserError&) {
   }
-  if (models_inside) throw UserError(project + "exists and is no mapping database; give another name, or remove it.");
+  if (!mappings) throw UserError(project + "exists and is no mapping database; give another name, or remove it.");
 }
 
 void check_space(double bytes, double free) {
@@ -143,6 +151,18 @@ MlpRaster store(const Example& e, const std::string& stem, Draft& draft, double&
   return raster;
 }
 
+/// What the first example shows, as a mesh: MeshLab lists no rasters of a project without meshes.
+void add_surface(const Example& e, const std::string& stem, Draft& draft, MlpProject& project) {
+  try {
+    Progress silent;
+    DepthMesh surface = depth_to_mesh(e.depth, {}, e.camera, {}, silent);
+    surface.mesh.textures = {draft.now(stem + ".png")};
+    write_mesh(surface.mesh, draft.now(stem + "_surface.ply"));
+    project.meshes.push_back({project.rasters.back().label, draft.later(stem + "_surface.ply")});
+  } catch (const UserError&) {  // too small to be a surface
+  }
+}
+
 }  // namespace
 
 MappingsReport build_mappings(const ModelDatabase& database, const std::vector<View>& views, const std::string& output,
@@ -172,6 +192,7 @@ MappingsReport build_mappings(const ModelDatabase& database, const std::vector<V
       std::snprintf(number, sizeof number, "%03d_", m);
       const std::string stem = number + safe(e.object) + "_" + shown(e.view.yaw) + "_" + shown(e.view.pitch);
       project.rasters.push_back(store(e, stem, draft, bytes));
+      if (project.rasters.size() == 1) add_surface(e, stem, draft, project);
       ++report.examples;
     }
     report.objects += report.examples > before;

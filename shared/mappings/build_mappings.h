@@ -14,7 +14,8 @@ struct MappingsReport {
 
 /// Renders every model of a database from every view and stores the examples as
 /// a project that MeshLab opens: heads.mlp, with images, depths, masks and back
-/// depths in the folder heads_mappings beside it. The class's preset goes along.
+/// depths in the folder heads_mappings beside it. The class's preset goes along,
+/// and, for MeshLab to show, the surface of the first example as a mesh.
 /// An older database of that name is replaced once the new one is complete;
 /// after a failure or cancellation it is as it was.
 /// @param output  the .mlp

@@ -88,10 +88,11 @@ class BuildMappings(lib.MeshCase):
 
     def test_meshlab_opens_it(self):
         self.built()
-        result = run([], [], {}, project=self.output, save_project=True)
+        result = run([], [], {"surface": 0}, project=self.output, save_project=True)
         self.assertSucceeded(result)
         saved = list(xml.parse(result.folder / "out.mlp").getroot().iter("MLRaster"))
         self.assertEqual(len(saved), 6)
+        self.assertGreater(len(result.mesh("surface").f), 1000)
         original = list(xml.parse(self.output).getroot().iter("MLRaster"))
         for a, b in zip(saved, original):
             self.assertEqual(a.get("label"), b.get("label"))

@@ -184,6 +184,9 @@ TEST_F(Mappings, AStoredDatabaseGivesWhatWasRendered) {
   // The same rendering, if framed for the same views.
   const MlpProject project = read_mlp(at("db/class.mlp"));
   ASSERT_EQ(project.rasters.size(), 6u);
+  ASSERT_EQ(project.meshes.size(), 1u) << "for MeshLab to show";
+  const Mesh surface = read_mesh(project.meshes[0].file);
+  EXPECT_TRUE(fs::equivalent(surface.textures.at(0), project.rasters[0].planes[0].file));
   for (const MlpRaster& r : project.rasters) {
     ASSERT_EQ(r.planes.size(), 4u);
     EXPECT_EQ(r.planes[0].semantic, plane::kColor) << "MeshLab shows the first plane";
@@ -209,7 +212,7 @@ TEST_F(Mappings, BuildingAgainReplaces) {
   EXPECT_EQ(stored->views(0).size(), 1u);
   int images = 0;
   for (const std::string& name : files()) images += name.find("class_mappings/0") == 0;
-  EXPECT_EQ(images, 3 * 4) << "files of the old views are gone";
+  EXPECT_EQ(images, 3 * 4 + 1) << "files of the old views are gone";
   EXPECT_TRUE(fs::exists(folder / "class_mappings" / "mine.txt"));
 }
 
