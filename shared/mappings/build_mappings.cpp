@@ -26,10 +26,13 @@ std::string shown(double angle) {
   return text;
 }
 
-/// What a file system takes as part of a name.
+/// What any file system takes as part of a name; without a mesh file's ending.
 std::string safe(const std::string& name) {
+  const fs::path ending = fs::path(name).extension();
+  const bool file = ending == ".ply" || ending == ".obj" || ending == ".off" || ending == ".stl";
   std::string out;
-  for (char c : name) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+  for (char c : file ? fs::path(name).stem().string() : name)
+    out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
   return out.substr(0, 40);
 }
 

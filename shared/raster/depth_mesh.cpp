@@ -18,7 +18,7 @@ constexpr double kJumpShare = 0.05;      // of the depth range, at which a surfa
 constexpr double kJumpPixels = 6;        // steeper than about 80 degrees
 constexpr double kLeastThickness = 0.5;  // pixels, of a solid
 constexpr int kWallSteps = 64;           // most triangles across a wall
-constexpr double kBytesPerPixel = 600;   // here and in the host, of one sheet
+constexpr double kBytesPerPixel = 350;   // measured: mesh and layer of a textured sheet
 
 /// Front and back of each pixel, and what is torn.
 class Solid {
@@ -91,7 +91,7 @@ void check_input(const cv::Mat& depth, const cv::Mat& back, const Camera& camera
     throw UserError(
         "Some depths are negative, where a pinhole camera sees nothing; change the sign of DepthScale, or "
         "set FocalLength to 0.");
-  const double bytes = kBytesPerPixel * seen * (back.empty() ? 1 : 2.5), free = available_memory();
+  const double bytes = kBytesPerPixel * seen * (back.empty() ? 1 : 2), free = available_memory();
   if (free > 0 && bytes > free) {
     char text[96];
     std::snprintf(text, sizeof text, "%.1f GB of memory, and %.1f GB are free", bytes / 1e9, free / 1e9);
