@@ -10,6 +10,7 @@ namespace parts {
 /// Where a surface is closest to a point.
 struct Closest {
   Vec3 point, normal;
+  int triangle = -1;  ///< of the surface; -1 where only samples are known
 };
 
 /// A surface that answers where it is closest.
@@ -58,6 +59,7 @@ class TriangleTree : public ClosestPoint {
 
   std::vector<std::array<Vec3, 3>> triangles_;  ///< in the leaves' order
   std::vector<Vec3> normals_;
+  std::vector<int> number_;  ///< in the surface
   std::vector<Node> nodes_;
 };
 

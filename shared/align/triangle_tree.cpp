@@ -45,6 +45,7 @@ TriangleTree::TriangleTree(const Surface& surface) {
   for (int f : order) {
     triangles_.push_back(surface.triangles[f]);
     normals_.push_back(surface.normals[f]);
+    number_.push_back(f);
   }
 }
 
@@ -105,7 +106,7 @@ Closest TriangleTree::closest(const Vec3& p, int& hint) const {
     }
   }
   hint = best;
-  return {point, normals_[best]};
+  return {point, normals_[best], number_[best]};
 }
 
 }  // namespace parts

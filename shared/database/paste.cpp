@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "database/paste.h"
+
+#include "compose/clip.h"
+#include "compose/joined.h"
+#include "compose/seam.h"
+#include "database/closest_face.h"
+#include "geometry/attributes.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/topology.h"
+
+namespace parts {
+namespace {
+
+/// The distance to the borders of a scan.
+class RimDistance {
+ public:
+  RimDistance(const Mesh& scan, const std::vector<Loop>& rims) {
+    Surface segments;
+    for (const Loop& rim : rims)
+      for (int i = 0; i < rim.size(); ++i) {
+        const Vec3 &a = scan.vertices[rim.vertices[i]], &b = scan.vertices[rim.vertices[(i + 1) % rim.size()]];
+        if (a == b) continue;
+        segments.triangles.push_back({a, b, b});  // a triangle of no width
+        segments.normals.push_back(Vec3::UnitZ());
+      }
+    tree_ = std::make_unique<TriangleTree>(segments);
+  }
+  double operator()(const Vec3& p) const {
+    int hint = 0;
+    return (tree_->closest(p, hint).point - p).norm();
+  }
+
+ private:
+  std::unique_ptr<TriangleTree> tree_;
+};
+
+double mean_edge(const Mesh& mesh, const Loop& rim) { return loop_length(mesh, rim) / rim.size(); }
+
+/// The model's part that lies beyond the scan's borders.
+Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loop>& rims, double edge,
+                      const PasteOptions& options) {
+  const ClosestFace on_scan(scan), on_model(model);
+  const RimDistance to_rim(scan, rims);
+  const double gap = 0.4 * edge;
+  ClipField field;
+  field.value = [&](const Vec3& p) {
+    const FaceHit hit = on_scan(p);
+    const double d = to_rim(p);
+    const bool covered =
+        !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(on_model(p).normal) > 0;
+    return (covered ? -d : d) - gap;
+  };
+  field.crosses = [&](const Mesh& m, int f) {
+    const Box b = m.face_box(f);
+    return to_rim(b.center()) <= gap + b.diagonal().norm();
+  };
+  field.max_edge = edge;
+  return clip(model, std::vector<signed char>(model.faces.size(), 0), field, options.threads);
+}
+
+/// Per vertex the number of its component, faces joined by vertices.
+std::vector<int> vertex_components(const Mesh& mesh) {
+  DisjointSets sets(mesh.vertex_count());
+  for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+  std::vector<int> component(mesh.vertices.size());
+  for (int v = 0; v < mesh.vertex_count(); ++v) component[v] = sets.find(v);
+  return component;
+}
+
+/// Keeps the components with flag 1 (by the number of vertex_components).
+void keep_components(Clipped& c, const std::vector<int>& component, const std::vector<char>& keep) {
+  std::vector<char> flags(c.mesh.faces.size());
+  for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = keep[component[c.mesh.faces[f][0]]];
+  std::vector<int> old_vertex, old_face, number(c.mesh.vertices.size(), -1);
+  Clipped out;
+  out.mesh = take_faces(c.mesh, flags, &old_vertex, &old_face);
+  for (int f : old_face) out.source_face.push_back(c.source_face[f]);
+  for (std::size_t v = 0; v < old_vertex.size(); ++v) {
+    number[old_vertex[v]] = int(v);
+    out.cut_vertex.push_back(c.cut_vertex[old_vertex[v]]);
+  }
+  for (const auto& e : c.border)
+    if (number[e[0]] >= 0 && number[e[1]] >= 0) out.border.push_back({number[e[0]], number[e[1]]});
+  c = std::move(out);
+}
+
+/// Of what lies beyond the borders, the pieces that face this rim, no farther than max_gap on average.
+void keep_facing(Clipped& patch, const Mesh& scan, const Loop& rim, double max_gap) {
+  const RimDistance to_rim(scan, {rim});
+  const std::vector<int> component = vertex_components(patch.mesh);
+  std::vector<double> facing(patch.mesh.vertices.size(), 0);  // length of such borders, per component
+  for (const Loop& loop : trace_loops(patch.border)) {
+    double sum = 0;
+    for (int v : loop.vertices) sum += to_rim(patch.mesh.vertices[v]);
+    if (sum <= max_gap * loop.size()) facing[component[loop.vertices[0]]] += loop_length(patch.mesh, loop);
+  }
+  // Splinters between the rim's teeth are left to the stitch.
+  const double most = facing.empty() ? 0 : *std::max_element(facing.begin(), facing.end());
+  std::vector<char> keep(facing.size(), 0);
+  for (std::size_t c = 0; c < keep.size(); ++c) keep[c] = facing[c] > 0 && facing[c] >= 0.2 * most;
+  keep_components(patch, component, keep);
+}
+
+/// Flags of the scan's faces that belong to small loose pieces within the region.
+std::vector<char> loose_pieces(const Mesh& scan, const Loop& rim, double size) {
+  const std::vector<int> component = vertex_components(scan);
+  const int own = component[rim.vertices[0]];
+  std::vector<Box> box(scan.vertices.size());
+  for (int v = 0; v < scan.vertex_count(); ++v) box[component[v]].extend(scan.vertices[v]);
+  Box hole;
+  for (int v : rim.vertices) hole.extend(scan.vertices[v]);
+  hole.min().array() -= 0.25 * size, hole.max().array() += 0.25 * size;
+  std::vector<char> loose(scan.faces.size(), 0);
+  for (int f = 0; f < scan.face_count(); ++f) {
+    const int c = component[scan.faces[f][0]];
+    loose[f] = c != own && hole.contains(box[c]) && box[c].diagonal().norm() < 0.8 * hole.diagonal().norm();
+  }
+  return loose;
+}
+
+/// Of the loose pieces, those that the patch covers.
+std::vector<char> covered_pieces(const Mesh& scan, const std::vector<char>& loose, const Mesh& patch, double near) {
+  const std::vector<int> component = vertex_components(scan);
+  const ClosestFace on_patch(patch);
+  std::vector<long> count(scan.vertices.size(), 0), close(scan.vertices.size(), 0);
+  for (int f = 0; f < scan.face_count(); ++f) {
+    if (!loose[f]) continue;
+    const Vec3 center = (scan.corner(f, 0) + scan.corner(f, 1) + scan.corner(f, 2)) / 3;
+    const FaceHit hit = on_patch(center);
+    ++count[component[scan.faces[f][0]]];
+    close[component[scan.faces[f][0]]] += hit.distance <= near && !hit.on_border;
+  }
+  std::vector<char> covered(scan.faces.size(), 0);
+  for (int f = 0; f < scan.face_count(); ++f)
+    if (const int c = component[scan.faces[f][0]]; loose[f]) covered[f] = close[c] >= 0.8 * count[c];
+  return covered;
+}
+
+Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Loop>& rims) {
+  Joined j;
+  j.mesh = scan;
+  append(j.mesh, patch.mesh);
+  const int first = scan.vertex_count();
+  j.seam.assign(j.mesh.vertices.size(), kNoSeam), j.fixed.assign(j.mesh.vertices.size(), 0);
+  j.closed.assign(j.mesh.vertices.size(), 0), j.like.assign(j.mesh.vertices.size(), -1);
+  std::fill(j.fixed.begin(), j.fixed.begin() + first, 1);
+  for (std::size_t v = first; v < j.closed.size(); ++v) {
+    j.closed[v] = 1;
+    if (patch.cut_vertex[v - first]) j.seam[v] = kBorderB;
+  }
+  for (int f = 0; f < j.mesh.face_count(); ++f) {
+    j.tag.push_back(f >= scan.face_count());
+    for (int v : j.mesh.faces[f]) j.like[v] = f;
+  }
+  j.loops_a = rims;
+  std::vector<std::array<int, 2>> border = patch.border;
+  for (auto& e : border) e[0] += first, e[1] += first;
+  j.loops_b = trace_loops(border);
+  for (const Loop& rim : rims)
+    for (int v : rim.vertices) j.seam[v] = kBorderA;
+  return j;
+}
+
+}  // namespace
+
+Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands, const PasteOptions& options) {
+  Pasted out;
+  // Loose pieces: out of the way at first, and back where the patch does not cover them.
+  Mesh scan = scan_with_islands;
+  Loop rim = rim_with_islands;
+  const auto without = [&](const std::vector<char>& gone) {
+    std::vector<char> keep(gone.size());
+    for (std::size_t f = 0; f < gone.size(); ++f) keep[f] = !gone[f];
+    std::vector<int> old_vertex, number(scan_with_islands.vertices.size(), -1);
+    scan = take_faces(scan_with_islands, keep, &old_vertex);
+    for (std::size_t v = 0; v < old_vertex.size(); ++v) number[old_vertex[v]] = int(v);
+    for (std::size_t i = 0; i < rim.vertices.size(); ++i) rim.vertices[i] = number[rim_with_islands.vertices[i]];
+  };
+  const std::vector<char> loose = loose_pieces(scan_with_islands, rim_with_islands, options.size);
+  const bool any_loose = std::find(loose.begin(), loose.end(), 1) != loose.end();
+  if (any_loose) without(loose);
+
+  const double edge = mean_edge(scan, rim), max_gap = std::max(3 * edge, 0.5 * options.tolerance);
+  std::vector<Loop> rims = find_rims(scan);
+  Clipped patch = beyond_border(scan, model, rims, edge, options);
+  keep_facing(patch, scan, rim, max_gap);
+  if (patch.mesh.faces.empty()) return out;
+  if (any_loose) {
+    const std::vector<char> covered = covered_pieces(scan_with_islands, loose, patch.mesh, options.tolerance);
+    without(covered);
+    std::vector<int> pieces = vertex_components(scan_with_islands);
+    std::vector<char> seen(pieces.size(), 0);
+    for (std::size_t f = 0; f < covered.size(); ++f)
+      if (const int c = pieces[scan_with_islands.faces[f][0]]; covered[f] && !seen[c]) seen[c] = 1, ++out.islands;
+    rims = find_rims(scan);
+  }
+  // Only rims that the patch may reach.
+  Box reach = patch.mesh.bounds();
+  rims.erase(std::remove_if(rims.begin(), rims.end(),
+                            [&](const Loop& l) {
+                              Box b;
+                              for (int v : l.vertices) b.extend(scan.vertices[v]);
+                              return reach.exteriorDistance(b) > max_gap;
+                            }),
+             rims.end());
+  Joined j = side_by_side(scan, patch, rims);
+  const MeshCheck before = check(scan), loose_patch = check(patch.mesh);
+  ComposeReport report;
+  stitch_parts(j, max_gap, report);
+  finish_seam(j, edge, Cut::Refined, options.smoothing);
+  const MeshCheck after = check(j.mesh);
+  out.joined = report.loops_joined, out.capped = report.loops_capped;
+  out.seam_length = report.seam_length, out.seam_gap = report.seam_gap;
+  // What may stay open: the scan's other borders, and holes that the model has itself.
+  const int own = loose_patch.boundary_edges - int(patch.border.size());
+  out.closed = report.loops_joined > 0 && after.boundary_edges <= before.boundary_edges - rim.size() + own &&
+               after.nonmanifold_edges <= before.nonmanifold_edges &&
+               after.nonmanifold_vertices <= before.nonmanifold_vertices + loose_patch.nonmanifold_vertices &&
+               after.inconsistent_edges <= before.inconsistent_edges;
+  out.mesh = std::move(j.mesh);
+  out.face_from_model = std::move(j.tag);
+  return out;
+}
+
+}  // namespace parts

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "database/restore.h"
+
+#include <algorithm>
+
+#include "database/closest_face.h"
+#include "database/fit_to_rim.h"
+#include "database/flaw.h"
+#include "database/paste.h"
+#include "geometry/attributes.h"
+#include "geometry/prepare.h"
+
+namespace parts {
+namespace {
+
+Vec3 center_of(const Mesh& m, int f) { return (m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3; }
+
+/// What of a model can matter: the region and as much around it.
+Mesh surroundings(const Mesh& model, const Region& region) {
+  Box box = region.box;
+  box.min().array() -= region.size(), box.max().array() += region.size();
+  std::vector<char> in(model.faces.size());
+  for (int f = 0; f < model.face_count(); ++f) in[f] = box.intersects(model.face_box(f));
+  return take_faces(model, in);
+}
+
+/// Turns a model over if most of it faces the other way than the scan beside it.
+void agree_on_sides(Mesh& model, const Mesh& scan, double near) {
+  const ClosestFace on_scan(scan);
+  double balance = 0;
+  for (int f = 0; f < model.face_count(); ++f) {
+    const Vec3 n = (model.corner(f, 1) - model.corner(f, 0)).cross(model.corner(f, 2) - model.corner(f, 0));
+    const FaceHit hit = on_scan(center_of(model, f));
+    if (!hit.on_border && hit.distance < near) balance += n.dot(hit.normal);
+  }
+  if (balance < 0) flip_orientation(model);
+}
+
+/// One model on its way into the scan.
+struct Fit {
+  int model = -1;
+  Mesh mesh;
+  Fitted fitted;
+};
+
+class Mender {
+ public:
+  Mender(const Mesh& scan, const Region& region, const std::vector<PlacedModel>& models, const RestoreOptions& options,
+         Progress& progress)
+      : scan_(scan), region_(region), models_(models), options_(options), progress_(progress) {}
+
+  Restored restore();
+  Restored fill();
+
+ private:
+  Fit fit(int model, const std::vector<char>& good) const;
+  PasteOptions paste_options() const;
+  /// Pastes into a scan with a hole. @param whole  the scan's face numbers before, for the report
+  bool paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const;
+
+  const Mesh& scan_;
+  const Region& region_;
+  const std::vector<PlacedModel>& models_;
+  const RestoreOptions& options_;
+  Progress& progress_;
+};
+
+Fit Mender::fit(int model, const std::vector<char>& good) const {
+  Fit f;
+  f.model = model;
+  f.mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
+  if (f.mesh.faces.empty()) return f;
+  agree_on_sides(f.mesh, scan_, 0.5 * region_.size());
+  FitOptions o;
+  o.size = region_.size();
+  o.rigid = options_.refine;
+  o.scale = options_.allow_scale;
+  o.smooth = options_.fit_to_rim;
+  o.threads = options_.threads;
+  f.fitted = fit_to_rim(f.mesh, scan_, good, o, progress_);
+  f.mesh.vertices = f.fitted.vertices;
+  if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
+  return f;
+}
+
+PasteOptions Mender::paste_options() const {
+  PasteOptions o;
+  o.size = region_.size();
+  o.tolerance = (options_.fit_to_rim ? 0.1 : 0.3) * region_.size();
+  o.smoothing = options_.smoothing;
+  o.threads = options_.threads;
+  return o;
+}
+
+bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const {
+  Mesh mesh = open;
+  std::vector<char> tag(open.faces.size(), 0);
+  RestoreReport& r = out.report;
+  r = {};
+  for (const Loop& wanted : rims) {
+    // The one before may have joined this rim too, and numbers change.
+    const Vec3 at = open.vertices[wanted.vertices[0]], next = open.vertices[wanted.vertices[1]];
+    const std::vector<Loop> now = find_rims(mesh);
+    const auto same = [&](const Loop& l) {
+      for (int i = 0; i < l.size(); ++i)
+        if (mesh.vertices[l.vertices[i]] == at && mesh.vertices[l.vertices[(i + 1) % l.size()]] == next) return true;
+      return false;
+    };
+    const auto rim = std::find_if(now.begin(), now.end(), same);
+    if (rim == now.end()) continue;
+    Pasted p = paste(mesh, fit.mesh, *rim, paste_options());
+    if (!p.closed) return false;
+    r.rims_joined += p.joined, r.borders_capped += p.capped, r.islands_dropped += p.islands;
+    r.seam_length += p.seam_length, r.seam_gap = std::max(r.seam_gap, p.seam_gap);
+    // What was pasted before is the scan of this one.
+    std::vector<char> merged(p.mesh.faces.size(), 0);
+    for (std::size_t f = 0; f < merged.size(); ++f) merged[f] = p.face_from_model[f];
+    if (std::find(tag.begin(), tag.end(), 1) != tag.end() && p.islands == 0)
+      for (std::size_t f = 0; f < tag.size() && f < merged.size(); ++f)
+        if (!merged[f]) merged[f] = tag[f];
+    mesh = std::move(p.mesh), tag = std::move(merged);
+  }
+  r.model = fit.model;
+  r.rms_before = fit.fitted.rms_before, r.rms_after = fit.fitted.rms_after, r.inlier_share = fit.fitted.share;
+  r.faces_added = int(std::count_if(tag.begin(), tag.end(), [](char t) { return t != 0; }));
+  r.faces_replaced = scan_.face_count() - (mesh.face_count() - r.faces_added);
+  out.mesh = std::move(mesh), out.face_from_model = std::move(tag);
+  out.candidate = fit.mesh;
+  return true;
+}
+
+Restored Mender::fill() {
+  Restored out;
+  std::vector<char> good(scan_.faces.size(), 1);
+  for (int m = 0; m < int(models_.size()); ++m) {
+    progress_.at(double(m) / double(models_.size()));
+    const Fit f = fit(m, good);
+    if (f.mesh.faces.empty()) continue;
+    if (paste_into(scan_, region_.rims, f, out)) return out;
+  }
+  throw UserError(
+      "No model of the database continues the scan over the hole; choose a database with such a surface, raise the "
+      "number of Candidates, or give a region with more good surface around the hole.");
+}
+
+Restored Mender::restore() {
+  Restored out;
+  const FlawConstraints constraints = flaw_constraints(scan_, region_, options_.constraint_distance);
+  std::vector<char> good(scan_.faces.size());
+  for (std::size_t f = 0; f < good.size(); ++f) good[f] = !constraints.flaw[f];
+  if (std::find(constraints.flaw.begin(), constraints.flaw.end(), 1) == constraints.flaw.end())
+    throw UserError("No whole face of the scan lies in the region; enlarge the box around the flaw.");
+  for (int m = 0; m < int(models_.size()); ++m) {
+    progress_.at(double(m) / double(models_.size()));
+    Fit f = fit(m, good);
+    if (f.mesh.faces.empty()) continue;
+    const std::vector<char> replaced = cut_out_flaw(scan_, region_, constraints, f.mesh);
+    std::vector<char> stays(replaced.size());
+    for (std::size_t k = 0; k < stays.size(); ++k) stays[k] = !replaced[k];
+    if (std::find(stays.begin(), stays.end(), 1) == stays.end()) continue;
+    std::vector<int> old_vertex;
+    const Mesh open = take_faces(scan_, stays, &old_vertex);
+    // Rims that the cut has opened.
+    std::vector<char> beside(scan_.vertices.size(), 0);
+    for (int k = 0; k < scan_.face_count(); ++k)
+      if (replaced[k])
+        for (int v : scan_.faces[k]) beside[v] = 1;
+    std::vector<Loop> rims;
+    for (const Loop& l : find_rims(open))
+      if (std::any_of(l.vertices.begin(), l.vertices.end(), [&](int v) { return beside[old_vertex[v]] != 0; }))
+        rims.push_back(l);
+    if (rims.empty()) continue;
+    // The longest first: the patch that fills it may reach the others.
+    std::stable_sort(rims.begin(), rims.end(),
+                     [&](const Loop& a, const Loop& b) { return loop_length(open, a) > loop_length(open, b); });
+    if (paste_into(open, rims, f, out)) return out;
+  }
+  throw UserError(
+      "No model of the database fits the surface around the flaw; choose a database with such a surface, raise the "
+      "number of Candidates, or give a region with more good surface around the flaw.");
+}
+
+void check(const RestoreOptions& o, const std::vector<PlacedModel>& models) {
+  if (models.empty()) throw UserError("There is no model to mend the scan with; choose another database.");
+  if (!(o.constraint_distance > 0 && o.constraint_distance < 1))
+    throw UserError("ConstraintDistance must lie between 0 and 1, both excluded.");
+}
+
+}  // namespace
+
+Restored restore_surface(const Mesh& scan, const Region& region, const std::vector<PlacedModel>& models,
+                         const RestoreOptions& options, Progress& progress) {
+  check(options, models);
+  return region.rims.empty() ? Mender(scan, region, models, options, progress).restore()
+                             : Mender(scan, region, models, options, progress).fill();
+}
+
+Restored fill_hole(const Mesh& scan, const Region& region, const std::vector<PlacedModel>& models,
+                   const RestoreOptions& options, Progress& progress) {
+  check(options, models);
+  if (region.rims.empty()) throw UserError("There is no hole in the region; use Restore Surface for flaws.");
+  return Mender(scan, region, models, options, progress).fill();
+}
+
+}  // namespace parts
