@@ -38,7 +38,7 @@ class ClosestFace {
  private:
   const Mesh& mesh_;
   std::unique_ptr<TriangleTree> tree_;
-  std::vector<int> face_;                        ///< per triangle of the tree
+  std::vector<int> face_;                         ///< per triangle of the tree
   std::vector<std::array<bool, 3>> border_edge_;  ///< per face of the mesh
   std::vector<char> border_vertex_;
 };

@@ -25,43 +25,48 @@ double median(std::vector<double> v) {
 
 class Matcher {
  public:
-  Matcher(const Mesh& model, const Mesh& scan, const std::vector<char>& good, double size, int threads)
-      : model_(model), closest_(scan, good), size_(size), threads_(threads) {}
+  Matcher(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, double size, int threads)
+      : model_(model), flaw_(flaw), closest_(scan), size_(size), threads_(threads) {}
 
   bool empty() const { return closest_.empty(); }
 
   /// Pairs farther apart than `farthest`, on the scan's border or on a side
   /// that faces away are none; of the rest, those that are out of line count less.
-  Targets operator()(const std::vector<Vec3>& at, double farthest) const {
+  /// @param flaw_weight  of what lies on damaged faces
+  Targets operator()(const std::vector<Vec3>& at, double farthest, double flaw_weight) const {
     const int n = int(at.size());
     Mesh moved;
     moved.vertices = at, moved.faces = model_.faces;
     update_normals(moved);
     Targets t{at, std::vector<double>(n, 0)};
     std::vector<double> distance(n, -1);
-    std::vector<char> faces_scan(n, 0);
+    std::vector<char> faces_scan(n, 0), flawed(n, 0);
     parallel_for(n, threads_, [&](long begin, long end) {
       int hint = 0;
       for (long v = begin; v < end; ++v) {
         const FaceHit hit = closest_(at[v], hint);
         if (hit.on_border || hit.distance > farthest) continue;
-        faces_scan[v] = 1;
+        faces_scan[v] = 1, flawed[v] = !flaw_.empty() && flaw_[hit.face];
         if (hit.normal.dot(moved.vertex_normal[v].cast<double>()) < 0.5) continue;
         t.point[v] = hit.point, distance[v] = hit.distance;
       }
     });
     std::vector<double> found;
-    for (double d : distance)
-      if (d >= 0) found.push_back(d);
+    for (int v = 0; v < n; ++v)
+      if (distance[v] >= 0 && !flawed[v]) found.push_back(distance[v]);
     if (found.empty()) return t;
     const double spread = std::max(2.5 * median(found), 1e-4 * size_);
     double sum = 0, weights = 0;
     long facing = 0;
     for (int v = 0; v < n; ++v) {
-      facing += faces_scan[v];
+      facing += faces_scan[v] && !flawed[v];
       if (distance[v] < 0) continue;
-      const double r = distance[v] / spread;
+      const double r = distance[v] / (flawed[v] ? std::max(spread, 0.1 * size_) : spread);
       t.weight[v] = 1 / ((1 + r * r) * (1 + r * r));  // Geman and McClure
+      if (flawed[v]) {
+        t.weight[v] *= flaw_weight;
+        continue;
+      }
       sum += t.weight[v] * distance[v] * distance[v], weights += t.weight[v];
     }
     t.rms = std::sqrt(sum / weights), t.share = double(found.size()) / double(facing);
@@ -70,6 +75,7 @@ class Matcher {
 
  private:
   const Mesh& model_;
+  const std::vector<char>& flaw_;
   ClosestFace closest_;
   double size_;
   int threads_;
@@ -79,7 +85,8 @@ class Matcher {
 void apply_similarity(std::vector<Vec3>& from, const Targets& to, bool scale) {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
   double sum = 0;
-  for (std::size_t v = 0; v < from.size(); ++v) a += to.weight[v] * from[v], b += to.weight[v] * to.point[v], sum += to.weight[v];
+  for (std::size_t v = 0; v < from.size(); ++v)
+    a += to.weight[v] * from[v], b += to.weight[v] * to.point[v], sum += to.weight[v];
   if (!(sum > 0)) return;
   a /= sum, b /= sum;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -96,21 +103,22 @@ void apply_similarity(std::vector<Vec3>& from, const Targets& to, bool scale) {
 
 }  // namespace
 
-Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& good, const FitOptions& options,
+Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, const FitOptions& options,
                   Progress& progress) {
   Fitted fitted;
   fitted.vertices = model.vertices;
   const double size = options.size > 0 ? options.size : model.bounds().diagonal().norm() / 2;
-  const Matcher match(model, scan, good, size, options.threads);
+  const Matcher match(model, scan, flaw, size, options.threads);
   if (match.empty() || model.faces.empty()) return fitted;
 
-  Targets targets = match(fitted.vertices, 0.5 * size);
+  constexpr double kFlawRigid = 0.25, kFlawLength = 0.3;
+  Targets targets = match(fitted.vertices, 0.5 * size, kFlawRigid);
   fitted.rms_before = targets.rms, fitted.share = targets.share;
   constexpr int kRigidSteps = 20;
   for (int step = 0; options.rigid && step < kRigidSteps; ++step) {
     progress.at(0.3 * step / kRigidSteps);
     apply_similarity(fitted.vertices, targets, options.scale && step >= kRigidSteps / 4);
-    targets = match(fitted.vertices, 0.5 * size);
+    targets = match(fitted.vertices, 0.5 * size, kFlawRigid);
   }
   if (options.smooth) {
     Mesh start;
@@ -124,9 +132,12 @@ Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& 
       for (std::size_t v = 0; v < wanted.size(); ++v) wanted[v] = targets.point[v] - start.vertices[v];
       const std::vector<Vec3> u = field(wanted, targets.weight, lengths[step] * size * 0.5);
       double moved = 0;
-      for (std::size_t v = 0; v < u.size(); ++v) fitted.vertices[v] = start.vertices[v] + u[v], moved += u[v].squaredNorm();
+      for (std::size_t v = 0; v < u.size(); ++v)
+        fitted.vertices[v] = start.vertices[v] + u[v], moved += u[v].squaredNorm();
       fitted.moved = std::sqrt(moved / double(u.size()));
-      targets = match(fitted.vertices, std::max(0.1, 0.5 * lengths[step]) * size);
+      // Data of weight w are smoothed over length / w^(1/4): flaws count for their coarse shape only.
+      const double next = lengths[std::min(step + 1, lengths.size() - 1)];
+      targets = match(fitted.vertices, std::max(0.1, 0.5 * lengths[step]) * size, std::min(1.0, std::pow(next / kFlawLength, 4)));
     }
   }
   fitted.rms_after = targets.rms, fitted.share = targets.share;

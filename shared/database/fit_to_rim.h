@@ -18,10 +18,10 @@ struct FitOptions {
 
 /// A model brought onto a scan.
 struct Fitted {
-  std::vector<Vec3> vertices;         ///< the model's, moved
+  std::vector<Vec3> vertices;            ///< the model's, moved
   double rms_before = 0, rms_after = 0;  ///< distance of the matched vertices, world units
-  double moved = 0;                   ///< RMS displacement of all vertices by the smooth field, world units
-  double share = 0;                   ///< of the vertices that face good surface, those that match it
+  double moved = 0;                      ///< RMS displacement of all vertices by the smooth field, world units
+  double share = 0;                      ///< of the vertices that face good surface, those that match it
 };
 
 /// Fits a model that is nearly in place to the surface around a flaw or a hole
@@ -30,9 +30,10 @@ struct Fitted {
 /// field carries those displacements on over the flaw, coarse to fine. The
 /// model's details ride on it.
 /// @param model  every vertex belongs to a face
-/// @param good   per face of the scan: 1 = undamaged and to be matched
+/// @param flaw   per face of the scan: 1 = damaged; only its coarse shape is
+///               followed, where the model agrees with it. Empty: all is good.
 /// @throws Cancelled
-Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& good, const FitOptions& options,
+Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, const FitOptions& options,
                   Progress& progress);
 
 }  // namespace parts

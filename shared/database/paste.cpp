@@ -47,8 +47,7 @@ Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loo
   field.value = [&](const Vec3& p) {
     const FaceHit hit = on_scan(p);
     const double d = to_rim(p);
-    const bool covered =
-        !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(on_model(p).normal) > 0;
+    const bool covered = !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(on_model(p).normal) > 0;
     return (covered ? -d : d) - gap;
   };
   field.crosses = [&](const Mesh& m, int f) {
@@ -119,7 +118,7 @@ std::vector<char> loose_pieces(const Mesh& scan, const Loop& rim, double size) {
   return loose;
 }
 
-/// Of the loose pieces, those that the patch covers.
+/// Of the loose pieces, those that the patch runs along: an eyeball behind its lids mostly does not.
 std::vector<char> covered_pieces(const Mesh& scan, const std::vector<char>& loose, const Mesh& patch, double near) {
   const std::vector<int> component = vertex_components(scan);
   const ClosestFace on_patch(patch);
@@ -127,9 +126,10 @@ std::vector<char> covered_pieces(const Mesh& scan, const std::vector<char>& loos
   for (int f = 0; f < scan.face_count(); ++f) {
     if (!loose[f]) continue;
     const Vec3 center = (scan.corner(f, 0) + scan.corner(f, 1) + scan.corner(f, 2)) / 3;
+    const Vec3 n = (scan.corner(f, 1) - scan.corner(f, 0)).cross(scan.corner(f, 2) - scan.corner(f, 0));
     const FaceHit hit = on_patch(center);
     ++count[component[scan.faces[f][0]]];
-    close[component[scan.faces[f][0]]] += hit.distance <= near && !hit.on_border;
+    close[component[scan.faces[f][0]]] += hit.distance <= near && !hit.on_border && hit.normal.dot(n) > 0;
   }
   std::vector<char> covered(scan.faces.size(), 0);
   for (int f = 0; f < scan.face_count(); ++f)
@@ -164,7 +164,8 @@ Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Lo
 
 }  // namespace
 
-Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands, const PasteOptions& options) {
+Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands,
+             const PasteOptions& options) {
   Pasted out;
   // Loose pieces: out of the way at first, and back where the patch does not cover them.
   Mesh scan = scan_with_islands;
@@ -187,7 +188,7 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   keep_facing(patch, scan, rim, max_gap);
   if (patch.mesh.faces.empty()) return out;
   if (any_loose) {
-    const std::vector<char> covered = covered_pieces(scan_with_islands, loose, patch.mesh, options.tolerance);
+    const std::vector<char> covered = covered_pieces(scan_with_islands, loose, patch.mesh, 2 * options.tolerance);
     without(covered);
     std::vector<int> pieces = vertex_components(scan_with_islands);
     std::vector<char> seen(pieces.size(), 0);

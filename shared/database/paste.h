@@ -16,7 +16,7 @@ struct PasteOptions {
 struct Pasted {
   bool closed = false;  ///< the hole is gone and nothing new is open or non-manifold
   Mesh mesh;
-  std::vector<char> face_from_model;  ///< per face: 0 the scan's, 1 the model's, 2 made by the stitch
+  std::vector<char> face_from_model;        ///< per face: 0 the scan's, 1 the model's, 2 made by the stitch
   int joined = 0, capped = 0, islands = 0;  ///< rims joined, borders closed, loose pieces in the hole dropped
   double seam_length = 0, seam_gap = 0;     ///< world units
 };

@@ -82,12 +82,13 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
   for (int f = 0; f < scan.face_count(); ++f) {
     if (!selected[f]) continue;
     int& r = region_of[sets.find(scan.faces[f][0])];
-    if (r < 0) r = int(regions.size()), regions.push_back({Box(), std::vector<char>(scan.faces.size(), 0), {}}), bare.emplace_back();
+    if (r < 0)
+      r = int(regions.size()), regions.push_back({Box(), std::vector<char>(scan.faces.size(), 0), {}}),
+      bare.emplace_back();
     regions[r].flaw[f] = 1;
     bare[r].extend(scan.face_box(f));
   }
-  if (regions.empty())
-    throw UserError("No face is selected; select the damaged faces, or give the region as a box.");
+  if (regions.empty()) throw UserError("No face is selected; select the damaged faces, or give the region as a box.");
   if (std::count(selected.begin(), selected.end(), 1) == long(scan.faces.size()))
     throw UserError("Every face is selected, so that no good surface is left to go by; select the damaged faces only.");
   // Flaws whose surroundings overlap are mended together.
@@ -95,7 +96,8 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
     merged = false;
     for (std::size_t i = 0; i < regions.size() && !merged; ++i)
       for (std::size_t j = i + 1; j < regions.size() && !merged; ++j)
-        if (with_margin(bare[i], options.margin).intersects(bare[j]) || with_margin(bare[j], options.margin).intersects(bare[i])) {
+        if (with_margin(bare[i], options.margin).intersects(bare[j]) ||
+            with_margin(bare[j], options.margin).intersects(bare[i])) {
           for (std::size_t f = 0; f < scan.faces.size(); ++f) regions[i].flaw[f] |= regions[j].flaw[f];
           bare[i].extend(bare[j]);
           regions.erase(regions.begin() + long(j)), bare.erase(bare.begin() + long(j));
@@ -109,7 +111,8 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
 std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options) {
   check_scan(scan);
   const std::vector<Loop> rims = find_rims(scan);
-  if (rims.empty()) throw UserError("The scan has no hole; choose a layer with an open border, or use Restore Surface.");
+  if (rims.empty())
+    throw UserError("The scan has no hole; choose a layer with an open border, or use Restore Surface.");
   const Box box = options.by == RegionBy::Box ? checked_box(scan, options) : Box();
   const std::vector<char> selected = selected_faces(scan);
   std::vector<char> at_selection(scan.vertices.size(), 0);

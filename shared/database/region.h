@@ -17,10 +17,10 @@ enum class RegionBy {
 
 struct RegionOptions {
   RegionBy by = RegionBy::Selection;
-  Box box;                    ///< with Box, world units
-  double margin = 0;          ///< good surface around flaw or hole, world units; 0 = 0.35 of its half diagonal
-                              ///< (none around a box that the user drew)
-  double longest_rim = 0;     ///< with Holes: longer ones are meant to be (a neck, a base), world units; 0 = fill all
+  Box box;                     ///< with Box, world units
+  double margin = 0;           ///< good surface around flaw or hole, world units; 0 = 0.35 of its half diagonal
+                               ///< (none around a box that the user drew)
+  double longest_rim = 0;      ///< with Holes: longer ones are meant to be (a neck, a base), world units; 0 = fill all
   bool leave_selected = true;  ///< with Holes: so are those at which a face is selected
 };
 

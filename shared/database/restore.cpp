@@ -53,7 +53,7 @@ class Mender {
   Restored fill();
 
  private:
-  Fit fit(int model, const std::vector<char>& good) const;
+  Fit fit(int model, const std::vector<char>& flaw) const;
   PasteOptions paste_options() const;
   /// Pastes into a scan with a hole. @param whole  the scan's face numbers before, for the report
   bool paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const;
@@ -65,7 +65,7 @@ class Mender {
   Progress& progress_;
 };
 
-Fit Mender::fit(int model, const std::vector<char>& good) const {
+Fit Mender::fit(int model, const std::vector<char>& flaw) const {
   Fit f;
   f.model = model;
   f.mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
@@ -77,7 +77,7 @@ Fit Mender::fit(int model, const std::vector<char>& good) const {
   o.scale = options_.allow_scale;
   o.smooth = options_.fit_to_rim;
   o.threads = options_.threads;
-  f.fitted = fit_to_rim(f.mesh, scan_, good, o, progress_);
+  f.fitted = fit_to_rim(f.mesh, scan_, flaw, o, progress_);
   f.mesh.vertices = f.fitted.vertices;
   if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
   return f;
@@ -131,10 +131,9 @@ bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const F
 
 Restored Mender::fill() {
   Restored out;
-  std::vector<char> good(scan_.faces.size(), 1);
   for (int m = 0; m < int(models_.size()); ++m) {
     progress_.at(double(m) / double(models_.size()));
-    const Fit f = fit(m, good);
+    const Fit f = fit(m, {});
     if (f.mesh.faces.empty()) continue;
     if (paste_into(scan_, region_.rims, f, out)) return out;
   }
@@ -146,13 +145,11 @@ Restored Mender::fill() {
 Restored Mender::restore() {
   Restored out;
   const FlawConstraints constraints = flaw_constraints(scan_, region_, options_.constraint_distance);
-  std::vector<char> good(scan_.faces.size());
-  for (std::size_t f = 0; f < good.size(); ++f) good[f] = !constraints.flaw[f];
   if (std::find(constraints.flaw.begin(), constraints.flaw.end(), 1) == constraints.flaw.end())
     throw UserError("No whole face of the scan lies in the region; enlarge the box around the flaw.");
   for (int m = 0; m < int(models_.size()); ++m) {
     progress_.at(double(m) / double(models_.size()));
-    Fit f = fit(m, good);
+    Fit f = fit(m, constraints.flaw);
     if (f.mesh.faces.empty()) continue;
     const std::vector<char> replaced = cut_out_flaw(scan_, region_, constraints, f.mesh);
     std::vector<char> stays(replaced.size());

@@ -11,10 +11,10 @@ namespace parts {
 struct SmoothField::Solver {
   using Matrix = Eigen::SparseMatrix<double>;
   const std::vector<Vec3> points;
-  Eigen::VectorXd area;       ///< per vertex, in units of the mean
-  double unit = 1;            ///< world units: the root of the mean vertex area
-  Matrix bilaplacian;         ///< in those units
-  std::vector<int> component; ///< per vertex, numbered by a vertex of it
+  Eigen::VectorXd area;        ///< per vertex, in units of the mean
+  double unit = 1;             ///< world units: the root of the mean vertex area
+  Matrix bilaplacian;          ///< in those units
+  std::vector<int> component;  ///< per vertex, numbered by a vertex of it
   Eigen::SimplicialLDLT<Matrix> cholesky;
   bool analyzed = false;
 
