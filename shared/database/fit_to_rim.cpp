@@ -137,7 +137,8 @@ Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& 
       fitted.moved = std::sqrt(moved / double(u.size()));
       // Data of weight w are smoothed over length / w^(1/4): flaws count for their coarse shape only.
       const double next = lengths[std::min(step + 1, lengths.size() - 1)];
-      targets = match(fitted.vertices, std::max(0.1, 0.5 * lengths[step]) * size, std::min(1.0, std::pow(next / kFlawLength, 4)));
+      targets = match(fitted.vertices, std::max(0.1, 0.5 * lengths[step]) * size,
+                      std::min(1.0, std::pow(next / kFlawLength, 4)));
     }
   }
   fitted.rms_after = targets.rms, fitted.share = targets.share;

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names and types are relied on by scripts outside the project: they do not change.
+#include "parameters.h"
+
+#include "database/mend.h"
+
+namespace parts {
+
+namespace {
+
+using namespace host;
+
+Vec3 low(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(); }
+Vec3 high(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.max(); }
+
+/// What all three filters begin with.
+std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
+  const SearchOptions search;
+  std::vector<Parameter> list = {current_layer("Mesh", "Scan", "The damaged or incomplete model.")};
+  Parameter database;
+  database.kind = Parameter::Kind::OpenFile;
+  database.name = "Database";
+  database.label = "Model database";
+  database.help =
+      "Complete models of the same kind: a MeshLab project (.mlp) or a folder of .ply, .obj, .off and .stl files (in "
+      "the dialog choose the project, or type the folder's path). What the search computes is kept beside it for the "
+      "next time.";
+  database.values = {"mlp"};
+  list.push_back(database);
+  list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box"}, "Where",
+                        "Around the selection: the selected faces are the flaws, or lie beside the holes. Around all "
+                        "holes: each open border by itself. Box: what the box below holds."));
+  list.push_back(point("RegionMin", low(scene.current), "Where: box, low corner",
+                       "Used when the choice above is Box: the corner with the smallest x, y and z."));
+  list.push_back(point("RegionMax", high(scene.current), "Where: box, high corner",
+                       "Used when the choice above is Box: the corner with the largest x, y and z."));
+  list.push_back(length("Margin", 0, "Good surface around it",
+                        "How far the region reaches beyond the flaw or the hole, in the units of the scan; around a "
+                        "box, how far beyond the box. 0 is a third of the flaw's or hole's half size (nothing around a "
+                        "box)."));
+  list.push_back(integer("Candidates", candidates, 1, 1000, "Candidates",
+                         "How many of the most similar models are taken, at most."));
+  list.push_back(integer("Levels", search.levels, 1, 4, "Levels of the search",
+                         "The models are compared at so many resolutions, each twice as fine as the one before; at "
+                         "each the worse half is dropped."));
+  return list;
+}
+
+/// What all three filters end with.
+void add_search(std::vector<Parameter>& list) {
+  const SearchOptions search;
+  const RegionOptions region;
+  list.push_back(flag("AnyRotation", search.any_rotation, "Models may lie any way",
+                      "Tries every rotation of the models. Without it only rotations of up to about 30 degrees, which "
+                      "is quicker and safer where scan and models share a frame."));
+  list.push_back(length("LongestRim", region.longest_rim, "Longest rim",
+                        "With Around all holes: borders longer than this stay open, as a neck or a base is meant to "
+                        "be. 0 fills all."));
+  list.push_back(flag("LeaveSelected", region.leave_selected, "Leave holes with selected faces",
+                      "With Around all holes: holes with a selected face at their rim stay open."));
+}
+
+std::vector<Parameter> mend(const Scene& scene, bool fill) {
+  const RestoreOptions o;
+  const SeamSmoothing smoothing;
+  std::vector<Parameter> list = query(scene, fill ? RegionBy::Holes : RegionBy::Selection, 5);
+  list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
+                        "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
+                        "or of the largest distance of the model from the scan (holes). The cut finds the rest; "
+                        "results hardly depend on it."));
+  list.push_back(flag("Refine", o.refine, "Refine the placement",
+                      "Places the models once more by iterated closest points on the surface around the region."));
+  list.push_back(flag("AllowScale", o.allow_scale, "Allow a change of size",
+                      "The models may grow or shrink, equally in all directions. Other units of length are found "
+                      "either way."));
+  list.push_back(integer("Resolution", o.resolution, 0, 100000, "Resolution (voxels)",
+                         "Of the cut Thesis: voxels along the longest side of the region. 0 chooses from the meshes "
+                         "and the free memory."));
+  list.push_back(choice("Cut", 0, {"Refined", "Thesis", "Mesh"}, "Cut",
+                        "Refined and Mesh: the minimal cut on the faces of the scan; around a hole the whole scan is "
+                        "kept. Thesis: the published cut through voxels, with the constraints that the distance "
+                        "above gives."));
+  list.push_back(integer("SmoothIterations", smoothing.iterations, 0, 10000, "Smoothing steps of the seam",
+                         "How often the model's vertices near the seam move toward the middle of their neighbours. 0 "
+                         "leaves the seam as it was stitched."));
+  list.push_back(length("SmoothDistance", smoothing.distance, "Smoothing distance",
+                        "Vertices up to this distance from the seam are smoothed, in the units of the scan. 0 means "
+                        "two edges of the rim (two voxels with the cut Thesis)."));
+  list.push_back(number("SmoothWeight", smoothing.weight, 0, 1, "Smoothing weight",
+                        "How far a vertex moves in each step: 0 not at all, 1 all the way to the middle of its "
+                        "neighbours."));
+  list.push_back(flag("AddCandidate", false, "Add the model that was used",
+                      "Adds the model that each region was mended with, as it was placed and fitted, hidden."));
+  list.push_back(flag("FitToRim", o.fit_to_rim, "Fit the model to the scan",
+                      "Bends the model smoothly until it meets the surface around the flaw or hole, its details kept. "
+                      "Without it the model is pasted as it is, as in the thesis."));
+  list.push_back(integer("Blend", o.blend, 1, 1000, "Blend so many models",
+                         "So many of the candidates, fitted, are averaged where they agree. 1 takes the best alone."));
+  add_search(list);
+  return list;
+}
+
+}  // namespace
+
+std::vector<Parameter> find_parameters(const Scene& scene) {
+  const SearchOptions search;
+  std::vector<Parameter> list = query(scene, RegionBy::Selection, 3);
+  list.push_back(flag("AllowScale", search.allow_scale, "Allow a change of size",
+                      "The models may grow or shrink, equally in all directions. Other units of length are found "
+                      "either way."));
+  add_search(list);
+  return list;
+}
+
+std::vector<Parameter> restore_parameters(const Scene& scene) { return mend(scene, false); }
+std::vector<Parameter> fill_parameters(const Scene& scene) { return mend(scene, true); }
+
+}  // namespace parts

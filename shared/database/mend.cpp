@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "database/mend.h"
+
+#include <algorithm>
+
+#include "geometry/prepare.h"
+
+namespace parts {
+namespace {
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+std::vector<Candidate> search(const Mesh& scan, const Region& region, const ModelDatabase& database,
+                              const SearchOptions& options, Progress& progress) {
+  SearchQuery query{scan, region.box, {}};
+  if (!region.flaw.empty())
+    for (char flaw : region.flaw) query.face_weight.push_back(flaw ? 0.f : 1.f);
+  return find_similar(query, database, options, progress);
+}
+
+std::vector<Region> regions_of(const Mesh& scan, const MendOptions& options) {
+  return options.fill ? hole_regions(scan, options.region) : flaw_regions(scan, options.region);
+}
+
+/// The region in a scan that has changed since: by where its rims begin, and
+/// where its flawed faces are. Nothing if it is gone.
+bool find_again(Region& region, const Mesh& before, const Mesh& now) {
+  if (!region.flaw.empty()) {
+    // Faces outside the regions mended so far are as they were.
+    std::vector<std::array<Vec3, 3>> flawed;
+    const auto less = [](const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+      for (int k = 0; k < 3; ++k)
+        for (int d = 0; d < 3; ++d)
+          if (a[k][d] != b[k][d]) return a[k][d] < b[k][d];
+      return false;
+    };
+    for (int f = 0; f < before.face_count(); ++f)
+      if (region.flaw[f]) flawed.push_back({before.corner(f, 0), before.corner(f, 1), before.corner(f, 2)});
+    std::sort(flawed.begin(), flawed.end(), less);
+    region.flaw.assign(now.faces.size(), 0);
+    bool any = false;
+    for (int f = 0; f < now.face_count(); ++f)
+      if (std::binary_search(flawed.begin(), flawed.end(),
+                             std::array<Vec3, 3>{now.corner(f, 0), now.corner(f, 1), now.corner(f, 2)}, less))
+        region.flaw[f] = 1, any = true;
+    return any;
+  }
+  if (region.rims.empty()) return true;
+  std::vector<Loop> again;
+  const std::vector<Loop> rims = find_rims(now);
+  for (const Loop& old : region.rims) {
+    const Vec3 &at = before.vertices[old.vertices[0]], &next = before.vertices[old.vertices[1]];
+    for (const Loop& l : rims)
+      for (int i = 0; i < l.size(); ++i)
+        if (now.vertices[l.vertices[i]] == at && now.vertices[l.vertices[(i + 1) % l.size()]] == next)
+          again.push_back(l);
+  }
+  region.rims = std::move(again);
+  return !region.rims.empty();
+}
+
+void log_region(const RestoreReport& r, const std::vector<Candidate>& found, const ModelDatabase& database,
+                Progress& progress) {
+  for (std::size_t i = 0; i < found.size(); ++i)
+    progress.log("candidate_" + std::to_string(i + 1) + ": " + database.name(found[i].model) + " " +
+                 number(found[i].score));
+  progress.log("model: " + database.name(found[r.model].model));
+  const auto log = [&](const char* name, double value) { progress.log(std::string(name) + ": " + number(value)); };
+  log("blended", r.blended);
+  log("rms_before", r.rms_before), log("rms_after", r.rms_after), log("inlier_share", r.inlier_share);
+  log("faces_replaced", r.faces_replaced), log("faces_added", r.faces_added);
+  log("rims_joined", r.rims_joined), log("borders_capped", r.borders_capped);
+  log("islands_dropped", r.islands_dropped);
+  log("seam_length", r.seam_length), log("seam_gap", r.seam_gap);
+}
+
+}  // namespace
+
+Mesh placed(Mesh mesh, const Eigen::Affine3d& placement) {
+  const Eigen::Matrix3f turn = placement.linear().cast<float>();
+  for (Vec3& v : mesh.vertices) v = placement * v;
+  for (Eigen::Vector3f& n : mesh.vertex_normal) n = (turn * n).normalized();
+  return mesh;
+}
+
+std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database, const MendOptions& options,
+                               Progress& progress) {
+  const Mesh scan = prepare(input).mesh;
+  const std::vector<Region> regions = regions_of(scan, options);
+  std::vector<Found> all;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    Progress part = progress.part(int(100 * i / regions.size()), int(100 * (i + 1) / regions.size()));
+    progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
+    const std::vector<Candidate> found = search(scan, regions[i], database, options.search, part);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const Candidate& c = found[k];
+      progress.log("candidate_" + std::to_string(k + 1) + ": " + database.name(c.model) + " " + number(c.score));
+      all.push_back({int(i), placed(database.load(c.model), c.placement), database.name(c.model), c.score});
+    }
+  }
+  return all;
+}
+
+Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOptions& options, Progress& progress) {
+  Mended out;
+  const Mesh first = prepare(input).mesh;
+  std::vector<Region> regions = regions_of(first, options);
+  out.mesh = first;
+  out.regions = int(regions.size());
+  std::string failure;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const int from = int(100 * i / regions.size()), to = int(100 * (i + 1) / regions.size());
+    progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
+    Region region = regions[i];
+    if (!find_again(region, first, out.mesh)) {
+      progress.log("mended_before: 1");  // the patch of another hole reached it
+      ++out.mended;
+      continue;
+    }
+    try {
+      Progress searching = progress.part(from, from + (to - from) / 2);
+      const std::vector<Candidate> found = search(out.mesh, region, database, options.search, searching);
+      std::vector<PlacedModel> models;
+      for (const Candidate& c : found)
+        models.push_back({placed(database.load(c.model), c.placement), database.name(c.model)});
+      Progress mending = progress.part(from + (to - from) / 2, to);
+      mending.stage(options.fill ? "Filling" : "Restoring", 0, 100);
+      Restored r = options.fill ? fill_hole(out.mesh, region, models, options.restore, mending)
+                                : restore_surface(out.mesh, region, models, options.restore, mending);
+      log_region(r.report, found, database, progress);
+      out.mesh = std::move(r.mesh);
+      const Candidate& used = found[r.report.model];
+      out.candidates.push_back({int(i), std::move(r.candidate), database.name(used.model), used.score});
+      ++out.mended;
+    } catch (const UserError& e) {
+      failure = e.what();
+      if (regions.size() > 1) progress.log(std::string("left_as_it_was: ") + e.what());
+    }
+  }
+  if (out.candidates.empty()) throw UserError(failure);
+  return out;
+}
+
+}  // namespace parts
