@@ -13,6 +13,7 @@ struct FitOptions {
   bool rigid = true;   ///< a similarity first, then the smooth field
   bool scale = true;   ///< the similarity may change the size
   bool smooth = true;  ///< the smooth field; false: only the similarity
+  double finest = 0.06;  ///< the smallest detail that the field follows, of the size
   int threads = 0;     ///< 0 = all cores; the result does not depend on it
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "database/blend.h"
 #include "database/closest_face.h"
 #include "database/fit_to_rim.h"
 #include "database/flaw.h"
@@ -41,6 +42,7 @@ struct Fit {
   int model = -1;
   Mesh mesh;
   Fitted fitted;
+  int blended = 1;
 };
 
 class Mender {
@@ -53,6 +55,7 @@ class Mender {
   Restored fill();
 
  private:
+  Mesh rigidly_placed(int model, const std::vector<char>& flaw, Fitted& fitted) const;
   Fit fit(int model, const std::vector<char>& flaw) const;
   PasteOptions paste_options() const;
   /// Pastes into a scan with a hole. @param whole  the scan's face numbers before, for the report
@@ -65,20 +68,53 @@ class Mender {
   Progress& progress_;
 };
 
-Fit Mender::fit(int model, const std::vector<char>& flaw) const {
-  Fit f;
-  f.model = model;
-  f.mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
-  if (f.mesh.faces.empty()) return f;
-  agree_on_sides(f.mesh, scan_, 0.5 * region_.size());
+Mesh Mender::rigidly_placed(int model, const std::vector<char>& flaw, Fitted& fitted) const {
+  Mesh mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
+  if (mesh.faces.empty()) return mesh;
+  agree_on_sides(mesh, scan_, 0.5 * region_.size());
   FitOptions o;
   o.size = region_.size();
   o.rigid = options_.refine;
   o.scale = options_.allow_scale;
-  o.smooth = options_.fit_to_rim;
+  o.smooth = false;
   o.threads = options_.threads;
-  f.fitted = fit_to_rim(f.mesh, scan_, flaw, o, progress_);
-  f.mesh.vertices = f.fitted.vertices;
+  Progress silent;
+  fitted = fit_to_rim(mesh, scan_, flaw, o, silent);
+  mesh.vertices = fitted.vertices;
+  return mesh;
+}
+
+Fit Mender::fit(int model, const std::vector<char>& flaw) const {
+  Fit f;
+  f.model = model;
+  f.mesh = rigidly_placed(model, flaw, f.fitted);
+  if (f.mesh.faces.empty()) return f;
+  if (options_.blend > 1) {
+    std::vector<Mesh> others;
+    for (int m = 0; m < int(models_.size()) && int(others.size()) + 1 < options_.blend; ++m) {
+      if (m == model) continue;
+      Fitted unused;
+      Mesh other = rigidly_placed(m, flaw, unused);
+      if (!other.faces.empty()) others.push_back(std::move(other));
+      progress_.at(0.0);
+    }
+    BlendOptions o;
+    o.size = region_.size();
+    o.threads = options_.threads;
+    Blended blended = blend_models(f.mesh, others, scan_, flaw, o, progress_);
+    f.mesh.vertices = std::move(blended.vertices);
+    f.blended = blended.models;
+  }
+  if (options_.fit_to_rim) {
+    FitOptions o;
+    o.size = region_.size();
+    o.rigid = false;
+    o.threads = options_.threads;
+    const double before = f.fitted.rms_before;
+    f.fitted = fit_to_rim(f.mesh, scan_, flaw, o, progress_);
+    f.fitted.rms_before = before;
+    f.mesh.vertices = f.fitted.vertices;
+  }
   if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
   return f;
 }
@@ -120,7 +156,7 @@ bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const F
         if (!merged[f]) merged[f] = tag[f];
     mesh = std::move(p.mesh), tag = std::move(merged);
   }
-  r.model = fit.model;
+  r.model = fit.model, r.blended = fit.blended;
   r.rms_before = fit.fitted.rms_before, r.rms_after = fit.fitted.rms_after, r.inlier_share = fit.fitted.share;
   r.faces_added = int(std::count_if(tag.begin(), tag.end(), [](char t) { return t != 0; }));
   r.faces_replaced = scan_.face_count() - (mesh.face_count() - r.faces_added);

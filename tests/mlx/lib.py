@@ -75,7 +75,7 @@ class Run:
         self.logs, seen = [], 0
         for part in text.split("filter: ")[1:filters + 1]:
             # The host prints its whole log again after each filter.
-            lines = [line.split(": ", 1) for line in part.splitlines() if re.match(r"[a-z_]+: ", line)]
+            lines = [line.split(": ", 1) for line in part.splitlines() if re.match(r"[a-z_0-9]+: ", line)]
             self.logs.append(lines[seen:])
             seen = len(lines)
 

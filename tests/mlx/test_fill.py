@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fill Hole through meshlabserver: each way of giving the region, and failures."""
+import numpy as np
+
+import lib
+import mend
+import shapes
+from lib import run, select_faces, template
+
+BUSTS = mend.Busts()
+
+
+class Fill(lib.MeshCase):
+    def fill(self, mesh, **values):
+        return run([mesh], [template("fill_hole", **{"Database": BUSTS.database, **mend.MEND, **values})])
+
+    def check(self, result, scan):
+        self.assertSucceeded(result)
+        mesh = result.mesh()
+        self.assertManifold(mesh)
+        self.assertHasFaces(mesh, scan)
+        self.assertOneComponent(mesh)
+        return mesh
+
+    def test_all_holes(self):
+        scan = BUSTS.mesh("hole")
+        result = self.fill(BUSTS.file("hole"))
+        mesh = self.check(result, scan)
+        figures = result.figures()
+        self.assertEqual(figures["regions"], "1")
+        self.assertEqual(figures["mended"], "1")
+        self.assertEqual(int(figures["faces"]), len(mesh.f))
+        self.assertIn("bust_", figures["model"])
+        # A nose, not a lid: nearer to what was there than the hole's rim is.
+        whole = BUSTS.mesh("whole")
+        lost = whole.v[mend.inside(whole.v, BUSTS.boxes["hole"])]
+        lost = lost[mend.nearest(lost, scan.v) > 0.02]
+        self.assertGreater(len(lost), 20)
+        self.assertLess(mend.nearest(lost, mesh.v).mean(), 0.5 * mend.nearest(lost, scan.v).mean())
+
+    def test_crown_in_a_box(self):
+        self.check(self.fill(BUSTS.file("crown"), **BUSTS.region("crown")), BUSTS.mesh("crown"))
+
+    def test_beside_the_selection(self):
+        scan = BUSTS.mesh("hole")
+        low, high = BUSTS.boxes["hole"]
+        beside = " && ".join(f"({a}0 > {lo}) && ({a}0 < {hi})" for a, lo, hi in zip("xyz", low, high))
+        steps = [select_faces("(" + beside + ")"),
+                 template("fill_hole", Database=BUSTS.database, Region="Around the selection", **mend.MEND)]
+        self.check(run([BUSTS.file("hole")], steps), scan)
+
+    def test_as_in_the_thesis(self):
+        """Neither refined, fitted nor blended."""
+        result = self.fill(BUSTS.file("crown"), FitToRim=False, Refine=False, Blend=1)
+        self.assertSucceeded(result)
+        self.assertManifold(result.mesh())
+
+    def test_candidate_layer(self):
+        step = template("fill_hole", Database=BUSTS.database, AddCandidate=True, **mend.MEND)
+        result = run([BUSTS.file("hole")], [step], {"out": 1, "candidate": 2})
+        self.assertSucceeded(result)
+        self.assertGreater(len(result.mesh("candidate").f), 1000)
+
+    def test_holes_left_out(self):
+        self.assertFailed(self.fill(BUSTS.file("hole"), LongestRim=0.1), "left out")
+
+    def test_no_hole(self):
+        self.assertFailed(self.fill(BUSTS.file("whole")), "no hole")
+
+    def test_no_hole_in_the_box(self):
+        low, high = BUSTS.boxes["crown"]
+        self.assertFailed(self.fill(BUSTS.file("hole"), Region="Box", RegionMin=low, RegionMax=high), "no hole")
+
+    def test_no_database(self):
+        scan = BUSTS.file("hole")
+        self.assertFailed(self.fill(scan, Database=""), "database")
+        self.assertFailed(self.fill(scan, Database="nowhere/at_all"), "nowhere/at_all")
+
+    def test_matrix_counts(self):
+        """A layer's matrix places the scan, here in other units and turned."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = 100 * shapes.rotation((0, 1, 0), 20)
+        scan = BUSTS.mesh("hole")
+        result = run([BUSTS.file("hole")], [template("fill_hole", Database=BUSTS.database, **mend.MEND)],
+                     matrices={0: matrix})
+        self.assertSucceeded(result)
+        mesh = result.mesh()
+        self.assertManifold(mesh)
+        self.assertAlmostEqual(np.ptp(mesh.v[:, 1]) / np.ptp(scan.v[:, 1]), 100, delta=1)
+
+
+if __name__ == "__main__":
+    lib.main()
