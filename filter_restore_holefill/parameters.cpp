@@ -17,16 +17,10 @@ Vec3 high(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.max(
 std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
   const SearchOptions search;
   std::vector<Parameter> list = {current_layer("Mesh", "Scan", "The damaged or incomplete model.")};
-  Parameter database;
-  database.kind = Parameter::Kind::OpenFile;
-  database.name = "Database";
-  database.label = "Model database";
-  database.help =
-      "Complete models of the same kind: a MeshLab project (.mlp) or a folder of .ply, .obj, .off and .stl files (in "
-      "the dialog choose the project, or type the folder's path). What the search computes is kept beside it for the "
-      "next time.";
-  database.values = {"mlp"};
-  list.push_back(database);
+  list.push_back(open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Model database",
+                           "Complete models of the same kind: a MeshLab project (.mlp), or a folder of .ply, .obj, "
+                           ".off and .stl files (in the dialog choose any file in it, in scripts the folder). What the "
+                           "search computes is kept beside it for the next time."));
   list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box"}, "Where",
                         "Around the selection: the selected faces are the flaws, or lie beside the holes. Around all "
                         "holes: each open border by itself. Box: what the box below holds."));

@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <cstdlib>
 
 #include "database/fit_to_rim.h"
 #include "database/matching.h"
@@ -42,8 +41,8 @@ std::vector<std::vector<Vec3>> shapes_of(const Mesh& base, const std::vector<Mes
 
 }  // namespace
 
-Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan,
-                     const std::vector<char>& flaw, const BlendOptions& options, Progress& progress) {
+Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan, const std::vector<char>& flaw,
+                     const BlendOptions& options, Progress& progress) {
   Blended out{base.vertices, 1};
   std::vector<std::vector<Vec3>> shapes = shapes_of(base, others, options, progress);
   if (shapes.empty()) return out;
@@ -57,8 +56,8 @@ Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Me
   Matching match(base, scan, flaw, options.size, options.threads);
   std::vector<Vec3> now = mean;
   constexpr int kRounds = 6;
-  const double noise = getenv("NOISE") ? atof(getenv("NOISE")) : 0.02;  // of the size: what no blend of the models explains
-  const double observations = getenv("OBS") ? atof(getenv("OBS")) : 100;
+  constexpr double kNoise = 0.02;  // of the size: what no blend of the models explains
+  constexpr double kObservations = 100;
   for (int round = 0; round < kRounds; ++round) {
     progress.at(0.9 + 0.1 * round / kRounds);
     const Targets t = match(now, 0.25 * options.size, 1);
@@ -66,7 +65,7 @@ Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Me
     for (double w : t.weight) sum += w;
     if (!(sum > 0)) break;
     // Vertices beside each other say the same: they count as so many independent ones.
-    const double scale = observations / sum / std::pow(noise * options.size, 2);
+    const double scale = kObservations / sum / std::pow(kNoise * options.size, 2);
     Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(k, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k), row(k);
     for (int v = 0; v < n; ++v) {

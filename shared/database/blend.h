@@ -28,7 +28,7 @@ struct Blended {
 /// @param others  placed likewise
 /// @param flaw    per face of the scan: 1 = damaged; empty = none is
 /// @throws Cancelled
-Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan,
-                     const std::vector<char>& flaw, const BlendOptions& options, Progress& progress);
+Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan, const std::vector<char>& flaw,
+                     const BlendOptions& options, Progress& progress);
 
 }  // namespace parts

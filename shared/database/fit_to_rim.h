@@ -9,12 +9,12 @@
 namespace parts {
 
 struct FitOptions {
-  double size = 0;     ///< of the region, world units: what is smooth, near and far; 0 = the model's half diagonal
-  bool rigid = true;   ///< a similarity first, then the smooth field
-  bool scale = true;   ///< the similarity may change the size
-  bool smooth = true;  ///< the smooth field; false: only the similarity
+  double size = 0;       ///< of the region, world units: what is smooth, near and far; 0 = the model's half diagonal
+  bool rigid = true;     ///< a similarity first, then the smooth field
+  bool scale = true;     ///< the similarity may change the size
+  bool smooth = true;    ///< the smooth field; false: only the similarity
   double finest = 0.06;  ///< the smallest detail that the field follows, of the size
-  int threads = 0;     ///< 0 = all cores; the result does not depend on it
+  int threads = 0;       ///< 0 = all cores; the result does not depend on it
 };
 
 /// A model brought onto a scan.

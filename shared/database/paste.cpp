@@ -209,7 +209,7 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   const MeshCheck before = check(scan), loose_patch = check(patch.mesh);
   ComposeReport report;
   stitch_parts(j, max_gap, report);
-  finish_seam(j, edge, Cut::Refined, options.smoothing);
+  finish_seam(j, edge, Cut::Refined, options.smoothing, options.threads);
   const MeshCheck after = check(j.mesh);
   out.joined = report.loops_joined, out.capped = report.loops_capped;
   out.seam_length = report.seam_length, out.seam_gap = report.seam_gap;

@@ -19,12 +19,12 @@ class Restore(lib.MeshCase):
         return mesh
 
     def test_box(self):
-        step = template("restore", Database=BUSTS.database, **BUSTS.region("nose"), **mend.MEND)
-        mesh = self.check(run([BUSTS.file("scar")], [step]), BUSTS.boxes["nose"])
+        step = template("restore", Database=BUSTS.database, **BUSTS.region("cheek"), **mend.MEND)
+        mesh = self.check(run([BUSTS.file("scar")], [step]), BUSTS.boxes["cheek"])
         # Nearer to the unharmed bust than the scar was.
         whole, scar = BUSTS.mesh("whole"), BUSTS.mesh("scar")
-        damaged = whole.v[mend.nearest(whole.v, scar.v) > 0.01]
-        damaged = damaged[mend.inside(damaged, BUSTS.boxes["nose"])]
+        damaged = whole.v[mend.nearest(whole.v, scar.v) > 0.005]
+        damaged = damaged[mend.inside(damaged, BUSTS.boxes["cheek"])]
         self.assertGreater(len(damaged), 5)
         self.assertLess(mend.nearest(damaged, mesh.v).mean(), mend.nearest(damaged, scar.v).mean())
 
