@@ -18,7 +18,12 @@ namespace parts {
 namespace {
 
 constexpr double kScaleStep = 1.2;  // from one scale of the coarsest search to the next
-constexpr int kRotations = 96;      // tried for models that may lie any way
+constexpr int kNear = 11;           // rotations tried near the model's own
+constexpr int kRotations = 84;      // tried for models that may lie any way
+constexpr double kFarthest = 0.35;  // radii of the region: distances count up to it
+constexpr double kTurned = 0.1;     // what a normal across the other surface's costs, in kFarthest squared
+constexpr int kPlaces = 10;         // of a model that the coarsest search proposes
+constexpr int kPoints = 4000;       // of the query, in the coarsest search
 
 /// A scale of the search. `reach`: how far around the region the surface counts,
 /// in its radii (QuerySurface::weight).
@@ -27,11 +32,19 @@ struct Scale {
   int samples, iterations;
   int places;  ///< of a model that go on to the next scale
 };
-constexpr Scale kScales[] = {{4, 160, 15, 4}, {3, 300, 15, 2}, {2, 600, 20, 1}};
-constexpr Scale kFinal = {1.5, 1000, 30, 1};
-constexpr double kFarthest = 0.35;  // radii of the region: distances count up to it
-constexpr double kTurned = 0.1;     // what a normal across the other surface's costs, in kFarthest squared
-constexpr int kPlaces = 10;         // of a model that the coarsest search proposes
+/// How a search goes about it, from coarse to fine; the last scale is the exact fit.
+struct Plan {
+  Correlation::Size size;
+  std::array<Scale, 4> scales;
+};
+constexpr Plan kUsual{Correlation::kCoarse, {{{4, 160, 15, 4}, {3, 300, 15, 2}, {2, 600, 20, 1}, {1.5, 1000, 30, 1}}}};
+/// Where the usual one finds nothing that fits well: the region with less around
+/// it, as models with joints may agree there only; the best kLookedAtAgain models.
+constexpr Plan kCloser{Correlation::kFine,
+                       {{{1.5, 160, 15, 4}, {1.5, 300, 15, 2}, {1.5, 600, 20, 1}, {1.5, 1000, 30, 1}}}};
+constexpr double kDoubtful = 0.085;  // a score above it; measured: all below are right, half of those above wrong
+constexpr int kLookedAtAgain = 32;
+constexpr int kFit = int(kUsual.scales.size()) - 1, kLevels = kFit;
 
 /// Where a model may be: the query's frame in the model's.
 struct Place {
@@ -71,32 +84,36 @@ class Searcher {
         options_(options),
         progress_(progress),
         threads_(thread_count(options.threads)),
-        levels_(std::clamp(options.levels, 1, int(std::size(kScales)))),
+        levels_(std::clamp(options.levels, 1, kLevels)),
         cache_(database, {levels_, options.cache, options.threads}) {}
 
   std::vector<Candidate> run() {
-    progress_.stage("Reading the models", 0, 50);
+    progress_.stage("Reading the models", 0, 40);
     cache_.fill(progress_);
-    prepare();
-    progress_.stage("Comparing everywhere", 50, 75);
-    search_everywhere();
-    drop_worse_half();
-    for (int l = 1; l < levels_; ++l) {
-      progress_.stage("Comparing more finely", 70 + 5 * l, 75 + 5 * l);
-      refine(l);
-      drop_worse_half();
+    progress_.stage("Preparing the scan", 40, 42);
+    surface_ = std::make_unique<QuerySurface>(query_);
+    std::vector<int> models;
+    for (int m = 0; m < database_.size(); ++m)
+      if (cache_.raster(m)) models.push_back(m);
+    if (models.empty()) throw UserError("No model of the database can be used; the log says why each was skipped.");
+
+    std::vector<Candidate> found = search(kUsual, models, 42, 70);
+    if (found[0].score > kDoubtful && window_is_smaller()) {
+      models.assign(promising_.begin(), promising_.begin() + std::min(promising_.size(), std::size_t(kLookedAtAgain)));
+      merge(found, search(kCloser, models, 70, 100));
     }
-    progress_.stage("Fitting the best models", 85, 100);
-    std::vector<Candidate> found = fit();
-    progress_.at(1);
+    found.resize(std::min(found.size(), std::size_t(std::max(options_.candidates, 1))));
+    progress_.stage("Found", 100, 100);
     return found;
   }
 
  private:
-  void prepare();
+  std::vector<Candidate> search(const Plan& plan, const std::vector<int>& models, int from, int to);
+  bool window_is_smaller() const;
+  static void merge(std::vector<Candidate>& found, const std::vector<Candidate>& more);
   void choose_scales(Entry& e) const;
   std::vector<Eigen::Matrix3d> rotations() const;
-  void search_everywhere();
+  void search_everywhere(int from, int to);
   void propose(Entry& e, int scale, const Eigen::Matrix3d& rotation, const Correlation::Best& best) const;
   void refine(int level);
   void drop_worse_half();
@@ -110,28 +127,61 @@ class Searcher {
   int threads_, levels_;
   ModelCache cache_;
   std::unique_ptr<QuerySurface> surface_;
-  std::vector<Sample> samples_[std::size(kScales) + 1];
-  double area_[std::size(kScales) + 1] = {};
+  const Plan* plan_ = nullptr;
+  std::vector<Sample> samples_[kFit + 1];  ///< of each scale
+  double area_[kFit + 1] = {};
   std::vector<Entry> entries_;
+  std::vector<int> promising_;  ///< models in the order of the coarsest scale
 };
 
-void Searcher::prepare() {
-  surface_ = std::make_unique<QuerySurface>(query_);
-  for (std::size_t l = 0; l <= std::size(kScales); ++l) {
-    const Scale& s = l < std::size(kScales) ? kScales[l] : kFinal;
-    samples_[l] = surface_->samples(s.reach, l == 0 ? 4000 : s.samples);
-    area_[l] = surface_->weighted_area(s.reach);
+std::vector<Candidate> Searcher::search(const Plan& plan, const std::vector<int>& models, int from, int to) {
+  plan_ = &plan;
+  for (int l = 0; l <= kFit; ++l) {
+    samples_[l] = surface_->samples(plan.scales[l].reach, l == 0 ? kPoints : plan.scales[l].samples);
+    area_[l] = surface_->weighted_area(plan.scales[l].reach);
   }
-  for (int m = 0; m < database_.size(); ++m) {
-    if (!cache_.raster(m)) continue;
+  entries_.clear();
+  for (int m : models) {
     Entry e;
     e.model = m;
     e.raster = cache_.raster(m);
-    e.spectrum = Correlation::model(*e.raster);
+    e.spectrum = Correlation::model(*e.raster, plan.size);
     choose_scales(e);
     entries_.push_back(std::move(e));
   }
-  if (entries_.empty()) throw UserError("No model of the database can be used; the log says why each was skipped.");
+  const auto percent = [&](int share) { return from + (to - from) * share / 100; };
+  search_everywhere(percent(0), percent(50));
+  progress_.stage("Comparing the best places", percent(50), percent(60));
+  refine(0);
+  drop_worse_half();
+  for (int l = 1; l < levels_; ++l) {
+    progress_.stage("Comparing more finely", percent(50 + 10 * l), percent(60 + 10 * l));
+    refine(l);
+    drop_worse_half();
+  }
+  progress_.stage("Fitting the best models", percent(80), percent(100));
+  return fit();
+}
+
+/// Whether the closer search sees less around the region than the usual one, but all of the region.
+bool Searcher::window_is_smaller() const {
+  const Entry& e = entries_[0];
+  const double window = Correlation::kWindow / Correlation::kFine.model_side *
+                        double(e.raster->box().sizes().maxCoeff()) / e.places[0].pose.scale;
+  return surface_->radius() < window;
+}
+
+/// Of a model found twice the better place.
+void Searcher::merge(std::vector<Candidate>& found, const std::vector<Candidate>& more) {
+  for (const Candidate& c : more) {
+    const auto same = std::find_if(found.begin(), found.end(), [&](const Candidate& f) { return f.model == c.model; });
+    if (same == found.end())
+      found.push_back(c);
+    else if (c.score < same->score)
+      *same = c;
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
 }
 
 /// World units are taken to be the same, give or take a little, and sizes to be
@@ -157,14 +207,13 @@ void Searcher::choose_scales(Entry& e) const {
 
 std::vector<Eigen::Matrix3d> Searcher::rotations() const {
   std::vector<Eigen::Matrix3d> r;
+  for (int i = 0; i < kNear; ++i) {  // 25 degrees about axes spread over the sphere
+    const double z = 1 - (2 * i + 1) / double(kNear), a = 2.399963229728653 * i;
+    const Vec3 axis(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
+    r.push_back(Eigen::AngleAxisd(25 * M_PI / 180, axis).toRotationMatrix());
+  }
   if (options_.any_rotation)
-    r = spread_rotations(kRotations - 1);
-  else
-    for (int i = 0; i < 11; ++i) {  // 25 degrees about axes spread over the sphere
-      const double z = 1 - (2 * i + 1) / 11.0, a = 2.399963229728653 * i;
-      const Vec3 axis(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
-      r.push_back(Eigen::AngleAxisd(25 * M_PI / 180, axis).toRotationMatrix());
-    }
+    for (const Eigen::Matrix3d& turn : spread_rotations(kRotations)) r.push_back(turn);
   r.insert(r.begin(), Eigen::Matrix3d::Identity());
   return r;
 }
@@ -179,23 +228,23 @@ void Searcher::propose(Entry& e, int scale, const Eigen::Matrix3d& rotation, con
   e.places.push_back(p);
 }
 
-void Searcher::search_everywhere() {
+void Searcher::search_everywhere(int from, int to) {
   const std::vector<Eigen::Matrix3d> turns = rotations();
   std::vector<Correlation::Point> points;
   for (const Sample& s : samples_[0])
-    points.push_back({s.point - surface_->region().center(), 1 / surface_->weight(s.point, kScales[0].reach)});
+    points.push_back({s.point - surface_->region().center(), 1 / surface_->weight(s.point, plan_->scales[0].reach)});
   std::map<int, std::vector<Entry*>> by_scale;
   for (Entry& e : entries_)
     for (int s : e.scales) by_scale[s].push_back(&e);
   int done = 0;
   for (const auto& [scale, entries] : by_scale) {
-    progress_.stage("Comparing everywhere", 50 + 15 * done / int(by_scale.size()),
-                    50 + 15 * (done + 1) / int(by_scale.size()));
+    const int all = int(by_scale.size());
+    progress_.stage("Comparing everywhere", from + (to - from) * done / all, from + (to - from) * (done + 1) / all);
     ++done;
     const double to_voxels = std::pow(kScaleStep, scale);
     std::vector<Correlation::Query> queries(turns.size() / 2);
     run_tasks(int(queries.size()), threads_, progress_, [&](int i, const auto&) {
-      queries[i] = Correlation::query(points, to_voxels * turns[2 * i], to_voxels * turns[2 * i + 1]);
+      queries[i] = Correlation::query(points, plan_->size, to_voxels * turns[2 * i], to_voxels * turns[2 * i + 1]);
     });
     run_tasks(int(entries.size()), threads_, progress_,
               [&, scale = scale, &entries = entries](int i, const auto& poll) {
@@ -207,13 +256,13 @@ void Searcher::search_everywhere() {
                 keep_best(entries[i]->places, kPlaces);
               });
   }
-  progress_.stage("Comparing the best places", 65, 75);
-  refine(0);
 }
 
 void Searcher::drop_worse_half() {
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.score() < b.score(); });
+  if (promising_.empty())
+    for (const Entry& e : entries_) promising_.push_back(e.model);
   const std::size_t least = std::size_t(std::max(options_.candidates, 1) + 2);
   entries_.resize(std::min(entries_.size(), std::max((entries_.size() + 1) / 2, least)));
 }
@@ -229,7 +278,7 @@ double squared_distance(const Vec3& p, const Vec3& sample, const Vec3& normal, d
 
 double Searcher::score(const Pose& pose, const ModelRaster& raster, const ClosestPoint& model, bool exact,
                        int scale_index) const {
-  const Scale& scale = scale_index < int(std::size(kScales)) ? kScales[scale_index] : kFinal;
+  const Scale& scale = plan_->scales[scale_index];
   const std::vector<Sample>& samples = samples_[scale_index];
   const double weighted_area = area_[scale_index];
   const double most = kFarthest * surface_->radius(), most2 = most * most;
@@ -266,7 +315,7 @@ double Searcher::score(const Pose& pose, const ModelRaster& raster, const Closes
 }
 
 void Searcher::refine(int level) {
-  const Scale& scale = kScales[level];
+  const Scale& scale = plan_->scales[level];
   const int grid = std::min(std::max(level, 1), levels_ - 1);
   run_tasks(int(entries_.size()), threads_, progress_, [&](int i, const std::function<void()>& poll) {
     Entry& e = entries_[i];
@@ -287,6 +336,7 @@ void Searcher::refine(int level) {
 }
 
 std::vector<Candidate> Searcher::fit() {
+  const Scale& scale = plan_->scales[kFit];
   entries_.resize(std::min(entries_.size(), std::size_t(std::max(options_.candidates, 1) + 2)));
   std::vector<Candidate> found(entries_.size());
   run_tasks(int(entries_.size()), threads_, progress_, [&](int i, const std::function<void()>& poll) {
@@ -294,17 +344,17 @@ std::vector<Candidate> Searcher::fit() {
     const Surface model = make_surface(database_.load(e.model), {}, "database");
     const TriangleTree tree(model);
     IcpOptions icp_options;
-    icp_options.samples = kFinal.samples;
-    icp_options.iterations = kFinal.iterations;
+    icp_options.samples = scale.samples;
+    icp_options.iterations = scale.iterations;
     icp_options.overlap = 0.9;
     icp_options.scale = options_.allow_scale;
     icp_options.done = 1e-5;
-    const std::vector<Sample>& samples = samples_[std::size(kScales)];
+    const std::vector<Sample>& samples = samples_[kFit];
     const Pose pose = icp(samples, tree, e.places[0].pose, icp_options, poll).pose;
     const Pose back = inverse(pose);
     Candidate& c = found[i];
     c.model = e.model;
-    c.score = score(pose, *e.raster, tree, true, int(std::size(kScales)));
+    c.score = score(pose, *e.raster, tree, true, kFit);
     const double world = back.scale * surface_->size() / model.size;
     c.placement.linear() = world * back.rotation;
     c.placement.translation() =
@@ -312,7 +362,6 @@ std::vector<Candidate> Searcher::fit() {
   });
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
-  found.resize(std::min(found.size(), std::size_t(std::max(options_.candidates, 1))));
   return found;
 }
 
