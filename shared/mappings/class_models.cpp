@@ -12,7 +12,7 @@ namespace parts {
 namespace {
 
 constexpr double kBound = 256e6;    // bytes of models that are kept
-constexpr double kAlike = 1.5;      // sizes within this factor of the median share a scale
+constexpr double kAlike = 2;        // sizes within this factor of the median share a scale
 constexpr int kTexelsPerPixel = 8;  // finer images of a model are not needed
 
 double bytes_of(const ClassModel& model) {

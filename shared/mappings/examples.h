@@ -11,7 +11,7 @@ namespace parts {
 
 /// Renders examples of the models of a database as they are asked for.
 ///
-/// All models are framed alike. Models within a factor 1.5 of the median size
+/// All models are framed alike. Models within a factor 2 of the median size
 /// share one scale, so that a tall man is taller than a small one; others (in
 /// other units, say) are drawn as large as the median one. The frame is the
 /// largest in which every model fits, in the views given and up to 35 degrees of
