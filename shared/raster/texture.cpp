@@ -37,7 +37,11 @@ bool shows_as_texture(const std::string& path, const Image& image) {
   if (std::find(std::begin(endings), std::end(endings), ending) == std::end(endings) || image.has_alpha) return false;
   const cv::Mat stored = as_stored(path);
   if (stored.depth() != CV_8U || stored.size() != image.color.size()) return false;
-  return stored.type() != CV_8UC3 || cv::norm(stored, image.color, cv::NORM_INF) == 0;  // turned by half a turn
+  if (stored.channels() == 4 || stored.channels() == 2) return true;
+  cv::Mat first, upright;  // it may have been turned by half a turn
+  cv::extractChannel(stored, first, 0);
+  cv::extractChannel(image.color, upright, 0);
+  return cv::norm(first, upright, cv::NORM_INF) == 0;
 }
 
 cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask) {
