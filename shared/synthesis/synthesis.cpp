@@ -47,7 +47,9 @@ class Optimizer {
             const ExampleUpdate& update)
       : options_(options), update_(update), sides_(level_sides(query, options)) {
     levels_ = int(sides_.size());
-    query_ = make_pyramid(query, levels_);
+    PatchImage padded = query;
+    padded.planes.resize(std::max(query.planes.size(), examples.front().planes.size()));
+    query_ = make_pyramid(padded, levels_);
     for (const PatchImage& e : examples) add(e);
     size_ = options.size > 0 ? options.size : std::sqrt(double(cv::countNonZero(query.mask)));
   }

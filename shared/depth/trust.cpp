@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/trust.h"
+
+#include <algorithm>
+
+#include "depth/view_search.h"
+
+namespace parts {
+namespace {
+
+double mean_distance(PatchImage query, const std::vector<PatchImage>& examples, const DepthOptions& options) {
+  query.planes = {query.planes[0], cv::Mat()};
+  SynthesisOptions o = synthesis_options(options);
+  o.patch_sizes = {o.patch_sizes.front()};
+  o.longest_coarsest = 0;
+  o.max_iterations = 1;
+  Progress quiet;
+  return cv::mean(synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
+}
+
+}  // namespace
+
+double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOptions& options) {
+  std::vector<PatchImage> members;
+  std::vector<int> objects;
+  for (size_t k = 0; k < set.size() && members.size() < 12; ++k) {
+    if (std::count(objects.begin(), objects.end(), set[k].object)) continue;
+    PatchImage e = set.gallery().small(set[k].object, set[k].view);
+    e.planes.resize(2);
+    members.push_back(e);
+    objects.push_back(set[k].object);
+  }
+  if (members.size() < 3) return 1;  // nothing to compare with
+  double others = 0;
+  const int asked = std::min(4, int(members.size()));
+  for (int i = 0; i < asked; ++i) {
+    const size_t k = i * members.size() / asked;
+    std::vector<PatchImage> rest = members;
+    rest.erase(rest.begin() + long(k));
+    others += mean_distance(members[k], rest, options) / asked;
+  }
+  return others > 0 ? mean_distance(small, members, options) / others : 1;
+}
+
+}  // namespace parts

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "depth/example_set.h"
+
+namespace parts {
+
+/// Above this, a query is too unlike the class.
+constexpr double untrusted = 2;
+
+/// How far the query's patches are from the examples', as a multiple of how far
+/// the patches of the class's own members are from those of the others. On a
+/// small scale, before and apart from the reconstruction.
+double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOptions& options);
+
+}  // namespace parts

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/view_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace parts {
+
+SynthesisOptions synthesis_options(const DepthOptions& options) {
+  SynthesisOptions o;
+  o.channels = {{0, options.intensity, false, true}, {0, options.high_frequency, true, true}, {1, options.depth, false, false}};
+  o.synthesized = {1};
+  o.patch_sizes = options.patch_sizes;
+  o.position = options.position;
+  o.silhouette = options.silhouette;
+  o.max_iterations = options.max_iterations;
+  o.threads = options.threads;
+  return o;
+}
+
+namespace {
+
+struct Spacing {
+  double yaw, pitch;  ///< degrees
+  int yaws, pitches;  ///< views on either side
+  int objects;
+};
+constexpr Spacing rounds[] = {{20, 15, 2, 2, 3}, {10, 10, 1, 1, 6}, {5, 5, 1, 1, 6}};
+
+bool known(const std::vector<View>& list, const View& v) {
+  return std::any_of(list.begin(), list.end(), [&](const View& w) { return angle_between(v, w) < 1; });
+}
+
+// The patches that each view's examples give.
+std::vector<double> compete(const PatchImage& query, Gallery& gallery, const std::vector<View>& views, int objects,
+                            const DepthOptions& options) {
+  std::vector<PatchImage> examples;
+  std::vector<int> of;
+  objects = std::min(objects, gallery.size());
+  for (size_t v = 0; v < views.size(); ++v)
+    for (int i = 0; i < objects; ++i) {
+      PatchImage e = gallery.small(i * gallery.size() / objects, views[v]);
+      e.planes.resize(2);
+      examples.push_back(std::move(e));
+      of.push_back(int(v));
+    }
+  SynthesisOptions o = synthesis_options(options);
+  o.patch_sizes = {o.patch_sizes.front()};
+  o.longest_coarsest = 0;
+  o.max_iterations = std::min(3, options.max_iterations);
+  Progress quiet;
+  const SynthesisResult r = synthesize(query, examples, o, {}, quiet);
+  std::vector<double> used(views.size(), 0);
+  for (size_t e = 0; e < examples.size(); ++e) used[of[e]] += double(r.used[e]);
+  return used;
+}
+
+// The mean of the angles around the most used one, weighted by their patches.
+View mean_view(const std::vector<View>& views, const std::vector<double>& used, const Spacing& spacing) {
+  const auto nearness = [&](const View& a, const View& b) {
+    const double yaw = (a.yaw - b.yaw) / spacing.yaw, pitch = (a.pitch - b.pitch) / spacing.pitch;
+    return yaw * yaw + pitch * pitch;
+  };
+  size_t best = 0;
+  double most = -1;
+  for (size_t v = 0; v < views.size(); ++v) {
+    double sum = 0;
+    for (size_t w = 0; w < views.size(); ++w) sum += used[w] * std::exp(-nearness(views[v], views[w]));
+    if (sum > most) most = sum, best = v;
+  }
+  double total = 0, yaw = 0, pitch = 0;
+  for (size_t v = 0; v < views.size(); ++v) {
+    if (nearness(views[v], views[best]) > 2.1) continue;
+    const double w = used[v] * used[v];  // squared, or views far off would drag the mean to the middle
+    total += w, yaw += w * views[v].yaw, pitch += w * views[v].pitch;
+  }
+  return total > 0 ? View{yaw / total, pitch / total} : views[best];
+}
+
+}  // namespace
+
+View find_view(const PatchImage& query, Gallery& gallery, const DepthOptions& options, Progress& progress) {
+  if (!gallery.has_any_view()) {
+    const std::vector<View>& views = gallery.stored_views();
+    if (views.size() == 1) return views.front();
+    progress.at(0.3);
+    return mean_view(views, compete(query, gallery, views, 6, options), rounds[0]);
+  }
+  std::vector<View> centers = options.views;
+  View view = centers.front();
+  double done = 0;
+  for (const Spacing& s : rounds) {
+    progress.at(done / std::size(rounds));
+    std::vector<View> views;
+    for (const View& c : centers)
+      for (int i = -s.yaws; i <= s.yaws; ++i)
+        for (int j = -s.pitches; j <= s.pitches; ++j) {
+          const View v{c.yaw + i * s.yaw, std::clamp(c.pitch + j * s.pitch, -89., 89.)};
+          if (!known(views, v)) views.push_back(v);
+        }
+    view = mean_view(views, compete(query, gallery, views, s.objects, options), s);
+    centers = {view};
+    ++done;
+  }
+  return view;
+}
+
+}  // namespace parts

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "depth/gallery.h"
+#include "depth/reconstruct_depth.h"
+
+namespace parts {
+
+/// The optimisation's options for {intensity, depth}.
+SynthesisOptions synthesis_options(const DepthOptions& options);
+
+/// From where the query is seen. Examples from a few views compete for its
+/// patches on a small scale; the mean of the angles, weighted by the patches that
+/// they gave, becomes the centre of the next, narrower round (thesis 4.1.3).
+/// Where the database stores views, they compete.
+/// @param query  small: gallery.small's scale
+View find_view(const PatchImage& query, Gallery& gallery, const DepthOptions& options, Progress& progress);
+
+}  // namespace parts
