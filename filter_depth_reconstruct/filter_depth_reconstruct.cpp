@@ -12,6 +12,7 @@ std::vector<host::Filter> host::filters() {
   return {
       build_mappings_filter(),
       depth_to_mesh_filter(),
+      reconstruct_depth_filter(),
   };
 }
 

@@ -35,7 +35,8 @@ cv::Mat warp(const cv::Mat& image, const cv::Matx23d& matrix, double scale, cv::
   cv::Mat from = image;
   cv::Matx23d m = matrix;
   if (scale < 0.75) {
-    const cv::Size small(std::max(1, int(std::lround(image.cols * scale))), std::max(1, int(std::lround(image.rows * scale))));
+    const cv::Size small(std::max(1, int(std::lround(image.cols * scale))),
+                         std::max(1, int(std::lround(image.rows * scale))));
     cv::resize(image, from, small, 0, 0, cv::INTER_AREA);
     const double sx = double(image.cols) / small.width, sy = double(image.rows) / small.height;
     // small (x, y) is the image's ((x + 1/2) sx - 1/2, ...)
@@ -105,7 +106,9 @@ PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size f
 double image_difference(const PatchImage& a, const PatchImage& b) {
   const cv::Point2d shift = centroid(a.mask) - centroid(b.mask);
   const int dx = int(std::lround(shift.x)), dy = int(std::lround(shift.y));
-  const auto at = [&](int x, int y) { return x >= 0 && y >= 0 && x < b.mask.cols && y < b.mask.rows && b.mask.at<uchar>(y, x); };
+  const auto at = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < b.mask.cols && y < b.mask.rows && b.mask.at<uchar>(y, x);
+  };
   double both = 0, only = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
   for (int y = 0; y < a.mask.rows; ++y)
     for (int x = 0; x < a.mask.cols; ++x) {
@@ -136,7 +139,8 @@ Placement align_query(const DepthQuery& query, Gallery& gallery, const DepthOpti
   if (!gallery.has_any_view()) views = gallery.stored_views();
   if (options.update_views && gallery.has_any_view())
     for (const View& v : options.views)
-      for (int i = -1; i <= 1; i += 2) views.push_back({v.yaw + 25 * i, v.pitch}), views.push_back({v.yaw, v.pitch + 18 * i});
+      for (int i = -1; i <= 1; i += 2)
+        views.push_back({v.yaw + 25 * i, v.pitch}), views.push_back({v.yaw, v.pitch + 18 * i});
   const int objects = std::min(6, gallery.size());
   std::vector<const PatchImage*> examples;
   double area = 0;

@@ -62,9 +62,8 @@ ExampleSet::ExampleSet(Gallery& gallery, const DepthOptions& options, const std:
     int added = 0;
     for (const Candidate& c : list) {
       if (added >= each || int(all_.size()) >= options.examples) break;
-      const bool there = std::any_of(all_.begin(), all_.end(), [&](const Prepared& p) {
-        return p.object == c.object && same(p.view, c.view);
-      });
+      const bool there = std::any_of(all_.begin(), all_.end(),
+                                     [&](const Prepared& p) { return p.object == c.object && same(p.view, c.view); });
       if (!there) add(c.object, c.view, ignored), ++added;
     }
   }

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "depth/alignment.h"
 #include "depth/example_set.h"
+#include "depth/segment.h"
 #include "depth/trust.h"
 #include "depth/view_search.h"
 #include "geometry/error.h"
@@ -19,16 +20,21 @@ namespace {
 
 constexpr double same_view = 5;  ///< degrees: nearer than this, a view in use does as well
 
-void check(const DepthQuery& query, const DepthOptions& options) {
-  if (query.color.empty() || query.color.type() != CV_8UC3)
+void check_image(const cv::Mat& color) {
+  if (color.empty() || color.type() != CV_8UC3)
     throw UserError("The image is empty or not a colour image of 8 bits; choose another.");
-  if (std::min(query.color.rows, query.color.cols) < 16)
-    throw UserError("The image has only " + std::to_string(query.color.cols) + " x " +
-                    std::to_string(query.color.rows) + " pixels; give one of at least 16 x 16.");
+  if (std::min(color.rows, color.cols) < 16)
+    throw UserError("The image has only " + std::to_string(color.cols) + " x " + std::to_string(color.rows) +
+                    " pixels; give one of at least 16 x 16.");
+}
+
+void check(const DepthQuery& query, const DepthOptions& options) {
   if (!query.mask.empty() && query.mask.size() != query.color.size())
     throw UserError("The mask has another size than the image; give one of " + std::to_string(query.color.cols) +
                     " x " + std::to_string(query.color.rows) + " pixels.");
-  if (cv::countNonZero(query.mask) < 64)
+  if (query.mask.empty() && !options.segment)
+    throw UserError("Nothing says what the foreground is; give a mask or an image with alpha, or let it be segmented.");
+  if (!query.mask.empty() && cv::countNonZero(query.mask) < 64)
     throw UserError("The foreground has fewer than 64 pixels; give a mask that shows the object, or a larger image.");
   for (double w : {options.intensity, options.high_frequency, options.depth, options.position, options.silhouette})
     if (!(w >= 0) || !std::isfinite(w)) throw UserError("A weight is negative or not a number; give 0 or more.");
@@ -83,13 +89,18 @@ cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const Example
 DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, const DepthOptions& options,
                               Progress& progress) {
   DepthQuery query = given;
-  if (query.mask.empty()) query.mask = cv::Mat(query.color.size(), CV_8U, cv::Scalar(255));
+  check_image(query.color);
+  if (query.mask.empty() && !options.segment) query.mask = plain_background_mask(query.color);
   check(query, options);
   DepthResult result;
   Gallery gallery(source, options.objects, options.seed);
   if (gallery.size() == 0) throw UserError("The database holds no example; choose another.");
 
-  progress.stage("Aligning", 0, 10);
+  if (options.segment) {
+    progress.stage("Segmenting", 0, 5);
+    query.mask = segment(query, gallery, options, progress);
+  }
+  progress.stage("Aligning", 5, 10);
   const Placement placement =
       options.align ? align_query(query, gallery, options) : fit_query(query, gallery.image_size());
   result.scale = placement.scale, result.rotation = placement.rotation;
@@ -103,8 +114,8 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   std::optional<View> found;
   if (options.update_views) {
     found = find_view(small, gallery, options, progress);
-    const auto near = std::find_if(views.begin(), views.end(),
-                                   [&](const View& v) { return angle_between(v, *found) < same_view; });
+    const auto near =
+        std::find_if(views.begin(), views.end(), [&](const View& v) { return angle_between(v, *found) < same_view; });
     views = {near != views.end() ? *near : *found};
   }
 

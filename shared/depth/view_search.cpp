@@ -8,7 +8,8 @@ namespace parts {
 
 SynthesisOptions synthesis_options(const DepthOptions& options) {
   SynthesisOptions o;
-  o.channels = {{0, options.intensity, false, true}, {0, options.high_frequency, true, true}, {1, options.depth, false, false}};
+  o.channels = {
+      {0, options.intensity, false, true}, {0, options.high_frequency, true, true}, {1, options.depth, false, false}};
   o.synthesized = {1};
   o.patch_sizes = options.patch_sizes;
   o.position = options.position;

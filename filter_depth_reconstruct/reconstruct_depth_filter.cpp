@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "depth/reconstruct_depth.h"
+#include "depth/segment.h"
+#include "filters.h"
+#include "geometry/error.h"
+#include "mappings/examples.h"
+#include "raster/depth_mesh.h"
+#include "raster/raster_io.h"
+#include "raster/texture.h"
+
+namespace parts {
+namespace {
+
+using namespace host;
+
+constexpr const char* slug = "reconstruct_depth";
+constexpr int largest_frame = 800;  ///< pixels that examples are rendered in
+
+std::vector<Parameter> parameters(const Scene&) {
+  const DepthOptions o;
+  const std::string by_class = " At its default, the class's preset counts where the database has one.";
+  return {
+      open_file("Image", {"png", "jpg", "jpeg", "tif", "tiff", "bmp"}, "Image",
+                "The image of the object. Empty: the current raster layer."),
+      open_file("Mask", {"png", "tif", "tiff", "bmp"}, "Mask",
+                "An image of the same size, bright where the object is. Empty: the image's alpha, or what is unlike a "
+                "border of one colour."),
+      open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Database",
+                "The examples of the class: a mapping database, or models (a project or a folder, for which any file "
+                "of it stands) that are rendered as they are needed."),
+      integer("Examples", o.examples, 1, 1000, "Examples", "How many are searched at a time."),
+      text("PatchSizes", "5,7,9", "Patch sizes",
+           "Sides of the patches in pixels, odd, coarse to fine; their number is the number of pyramid levels (large "
+           "images get more of the first size)." +
+               by_class),
+      number("WeightIntensity", o.intensity, 0, 1e6, "Weight of intensity",
+             "How much a patch's normalised intensities count." + by_class),
+      number("WeightHighFrequency", o.high_frequency, 0, 1e6, "Weight of high frequencies",
+             "How much the detail of its intensities counts." + by_class),
+      number("WeightDepth", o.depth, 0, 1e6, "Weight of depth",
+             "How much the depth found so far counts: more gives smoother surfaces." + by_class),
+      number("WeightPosition", o.position, 0, 1e6, "Weight of position",
+             "How much the place relative to the foreground's centroid counts: high for faces, low for what moves "
+             "its limbs." +
+                 by_class),
+      flag("UpdateObjects", o.update_objects, "Better objects",
+           "Replaces the least used quarter of the examples on each level by those whose depth is most like the "
+           "estimate."),
+      flag("UpdateViews", o.update_views, "Search the view",
+           "Searches from where the object is seen, up to 40 degrees around the views given. Without it the views are "
+           "used as they are."),
+      flag("AlignQuery", o.align, "Align the image",
+           "Turns and scales the image in its plane to fit the examples, where that fits clearly better."),
+      flag("Segment", o.segment, "Find the foreground",
+           "Finds the object in the image (within the mask, if one is given)."),
+      flag("BackSide", o.back, "Back side", "Reconstructs the far side too, and closes both into one solid."),
+      integer("MaxIterations", o.max_iterations, 1, 1000, "Iterations", "At most so many on each level."),
+      integer("Seed", 0, 0, 1000000, "Seed", "Chooses the objects that take part where the database has more than 64."),
+      text("Views", "0,0", "Start views",
+           "From where the object may be seen: yaw,pitch in degrees, separated by semicolons."),
+      save_file("DepthFile", "tif", "Depth file", "Where the depth is written (32-bit float TIFF or PFM)."),
+      save_file("BackDepthFile", "tif", "Back depth file", "Where the back's depth is written."),
+      save_file("UsageFile", "png", "Usage file",
+                "Where an image is written that shows, as a colour, which example each pixel came from."),
+      save_file("MaskFile", "png", "Mask file", "Where the foreground is written."),
+      save_file("TextureFile", "png", "Texture file",
+                "Where the texture is written. Empty: the image itself where MeshLab can show it as it is, or else a "
+                "new file beside it. Inputs are never replaced."),
+  };
+}
+
+std::vector<int> parse_sizes(const std::string& text) {
+  std::vector<int> sizes;
+  std::stringstream stream(text);
+  for (std::string word; std::getline(stream, word, ',');) {
+    std::stringstream number(word);
+    int size = 0;
+    std::string rest;
+    if (!(number >> size) || number >> rest)
+      throw UserError("PatchSizes is \"" + text + "\"; give odd numbers separated by commas, as in 5,7,9.");
+    sizes.push_back(size);
+  }
+  if (sizes.empty()) throw UserError("PatchSizes is empty; give odd numbers separated by commas, as in 5,7,9.");
+  return sizes;
+}
+
+/// A weight; at its default, what the class says.
+double weight(const Inputs& inputs, const char* name, double fallback, const ClassPreset& preset) {
+  const double given = inputs.number(name);
+  return std::abs(given - fallback) < 1e-6 ? preset.number(slug, name).value_or(given) : given;
+}
+
+DepthOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
+  DepthOptions o;
+  const std::string sizes = inputs.text("PatchSizes");
+  o.patch_sizes = parse_sizes(sizes == "5,7,9" ? preset.text(slug, "PatchSizes").value_or(sizes) : sizes);
+  o.examples = inputs.integer("Examples");
+  o.intensity = weight(inputs, "WeightIntensity", o.intensity, preset);
+  o.high_frequency = weight(inputs, "WeightHighFrequency", o.high_frequency, preset);
+  o.depth = weight(inputs, "WeightDepth", o.depth, preset);
+  o.position = weight(inputs, "WeightPosition", o.position, preset);
+  o.update_objects = inputs.flag("UpdateObjects");
+  o.update_views = inputs.flag("UpdateViews");
+  o.align = inputs.flag("AlignQuery");
+  o.segment = inputs.flag("Segment");
+  o.back = inputs.flag("BackSide");
+  o.max_iterations = inputs.integer("MaxIterations");
+  o.seed = unsigned(inputs.integer("Seed"));
+  o.views = parse_views(inputs.text("Views"));
+  return o;
+}
+
+struct Input {
+  std::string file;
+  Image image;
+  DepthQuery query;
+};
+
+Input read(const Inputs& inputs) {
+  Input in;
+  in.file = inputs.text("Image");
+  if (in.file.empty()) {
+    const std::optional<RasterLayer> raster = inputs.raster();
+    if (!raster) throw UserError("No image is named and there is no raster layer; choose an image or open one.");
+    in.file = raster->file;
+  }
+  if (inputs.text("Database").empty())
+    throw UserError("No database is named; choose a mapping database or a folder or project of models.");
+  if (!inputs.text("BackDepthFile").empty() && !inputs.flag("BackSide"))
+    throw UserError("BackDepthFile is named but BackSide is off; turn it on, or leave the name empty.");
+  in.image = read_image(in.file);
+  in.query.color = in.image.color;
+  const std::string mask = inputs.text("Mask");
+  if (!mask.empty())
+    in.query.mask = read_mask(mask, in.image.color.size());
+  else if (in.image.has_alpha)
+    in.query.mask = in.image.mask;
+  std::error_code error;
+  for (const char* output : {"DepthFile", "BackDepthFile", "UsageFile", "MaskFile"})
+    for (const std::string& input : {in.file, mask, inputs.text("Database")})
+      if (!inputs.text(output).empty() && std::filesystem::equivalent(inputs.text(output), input, error))
+        throw UserError(std::string(output) + " is one of the inputs; give another name.");
+  return in;
+}
+
+/// The frame that models are rendered in, so that the object is about as large
+/// in it as in the image.
+cv::Size frame_for(const DepthQuery& query, bool align) {
+  cv::Mat mask = query.mask.empty() ? plain_background_mask(query.color) : query.mask;
+  cv::Size2d frame = query.color.size();
+  cv::Mat points;
+  if (!mask.empty()) cv::findNonZero(mask, points);
+  if (align && !points.empty()) {
+    int left = mask.cols, right = 0, top = mask.rows, bottom = 0;
+    for (int i = 0; i < int(points.total()); ++i) {
+      const cv::Point p = points.at<cv::Point>(i);
+      left = std::min(left, p.x), right = std::max(right, p.x), top = std::min(top, p.y),
+      bottom = std::max(bottom, p.y);
+    }
+    const double w = right - left + 1, h = bottom - top + 1;
+    if (w < 0.4 * frame.width && h < 0.4 * frame.height) frame = {1.35 * w, 1.35 * h};
+  }
+  const double shrink = std::max(1., std::max(frame.width, frame.height) / largest_frame);
+  return {std::max(64, int(std::lround(frame.width / shrink))), std::max(64, int(std::lround(frame.height / shrink)))};
+}
+
+/// A colour an example, as different from the ones before as can be.
+cv::Mat usage_picture(const cv::Mat& example) {
+  cv::Mat picture(example.size(), CV_8UC3, cv::Scalar::all(255));
+  for (int y = 0; y < example.rows; ++y)
+    for (int x = 0; x < example.cols; ++x) {
+      const int k = example.at<int>(y, x);
+      if (k < 0) continue;
+      const double hue = std::fmod(k * 0.61803398875, 1.0) * 6, light = 1 - 0.18 * (k / 4 % 3);
+      const auto wave = [&](double shift) {
+        return uchar(255 * light * std::clamp(std::abs(std::fmod(hue + shift, 6.0) - 3) - 1, 0.1, 1.0));
+      };
+      picture.at<cv::Vec3b>(y, x) = {wave(2), wave(4), wave(0)};
+    }
+  return picture;
+}
+
+std::string degrees(const View& v) {
+  std::ostringstream out;
+  out.precision(3);
+  out << v.yaw << "," << v.pitch;
+  return out.str();
+}
+
+void log_result(const DepthResult& r, Progress& progress) {
+  log_value(progress, "view", degrees(r.view));
+  log_value(progress, "view_yaw", r.view.yaw);
+  log_value(progress, "view_pitch", r.view.pitch);
+  log_value(progress, "scale", r.scale);
+  log_value(progress, "rotation", r.rotation);
+  log_value(progress, "levels", double(r.plausibility.size()));
+  for (size_t l = 0; l < r.plausibility.size(); ++l)
+    for (size_t i = 0; i < r.plausibility[l].size(); ++i)
+      log_value(progress, ("plausibility_" + std::to_string(l) + "_" + std::to_string(i)).c_str(),
+                r.plausibility[l][i]);
+  std::vector<size_t> order(r.used.size());
+  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return r.used[a].patches > r.used[b].patches; });
+  for (size_t k : order)
+    if (r.used[k].patches > 0)
+      log_value(
+          progress, ("example_" + std::to_string(k)).c_str(),
+          r.used[k].object + " " + degrees(r.used[k].view) + " gave " + std::to_string(r.used[k].patches) + " patches");
+  log_value(progress, "foreground_pixels", cv::countNonZero(r.mask));
+  log_value(progress, "mean_patch_distance", cv::mean(r.distance, r.mask)[0]);
+  log_value(progress, "strangeness", r.strangeness);
+  log_value(progress, "trusted", r.trusted ? "yes" : "no");
+  if (!r.trusted)
+    log_value(progress, "warning",
+              "The image is unlike the examples: its patches are " + std::to_string(r.strangeness).substr(0, 4) +
+                  " times as far from them as theirs from each other; the result is not to be trusted.");
+}
+
+void write_files(const DepthResult& r, const Inputs& inputs) {
+  const std::string depth = inputs.text("DepthFile"), back = inputs.text("BackDepthFile");
+  const std::string usage = inputs.text("UsageFile"), mask = inputs.text("MaskFile");
+  if (!depth.empty()) write_depth(r.depth, depth);
+  if (!back.empty()) write_depth(r.back_depth, back);
+  if (!usage.empty()) write_image(usage_picture(r.example), usage);
+  if (!mask.empty()) write_image(r.mask, mask);
+}
+
+Outcome apply(const Inputs& inputs, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  progress.stage("Reading", 0, 15);
+  const Input in = read(inputs);
+  const std::string database = inputs.text("Database");
+  ExampleOptions rendering;
+  const cv::Size frame = frame_for(in.query, inputs.flag("AlignQuery"));
+  rendering.width = frame.width, rendering.height = frame.height;
+  rendering.back = inputs.flag("BackSide");
+  Progress opening = progress.part(0, 15);
+  const auto source = open_examples(database, parse_views(inputs.text("Views")), rendering, opening);
+  const DepthOptions options = options_of(inputs, source->preset());
+
+  Progress core = progress.part(15, 90);
+  const DepthResult r = reconstruct_depth(in.query, *source, options, core);
+  progress.stage("Meshing", 90, 100);
+  Progress meshing = progress.part(90, 98);
+  DepthMesh result = depth_to_mesh(r.depth, r.back_depth, r.camera, {}, meshing);
+
+  const std::string texture = inputs.text("TextureFile");
+  if (texture.empty() && shows_as_texture(in.file, in.image))
+    result.mesh.textures = {std::filesystem::absolute(in.file).lexically_normal().string()};
+  else
+    result.mesh.textures = {
+        write_texture(in.image.color, r.mask, {texture, in.file, {in.file, inputs.text("Mask"), database}})};
+  write_files(r, inputs);
+
+  log_value(progress, "objects", source->size());
+  log_value(progress, "frame_width", source->image_size().width);
+  log_value(progress, "frame_height", source->image_size().height);
+  log_result(r, progress);
+  log_value(progress, "texture", result.mesh.textures[0]);
+  log_value(progress, "vertices", result.mesh.vertex_count());
+  log_value(progress, "faces", result.mesh.face_count());
+  log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  Outcome outcome;
+  outcome.layers.push_back({"Reconstructed", std::move(result.mesh), true, r.camera});
+  outcome.current = 0;
+  return outcome;
+}
+
+}  // namespace
+
+host::Filter reconstruct_depth_filter() {
+  return {"Examples: Reconstruct Depth from Image",
+          slug,
+          Menu::Creation,
+          std::string("Estimates the depth of an object of a known class from one image, by example: each patch of "
+                      "the image and its depth shall look like one of models of the class. Says from where the object "
+                      "is seen, which example each pixel came from, and when the image is unlike the class. For a "
+                      "closed class, of which there are models; not for arbitrary scenes.") +
+              depth_reference,
+          parameters,
+          apply};
+}
+
+}  // namespace parts

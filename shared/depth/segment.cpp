@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/segment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "depth/alignment.h"
+#include "depth/view_search.h"
+#include "geometry/error.h"
+#include "synthesis/pyramid.h"
+
+namespace parts {
+namespace {
+
+constexpr int longest = 256;  ///< pixels at which colours are cut
+
+cv::Mat smaller(const cv::Mat& image, int interpolation) {
+  const double shrink = std::max(1., std::max(image.cols, image.rows) / double(longest));
+  cv::Mat result;
+  cv::resize(image, result, cv::Size(std::max(1, int(image.cols / shrink)), std::max(1, int(image.rows / shrink))), 0,
+             0, interpolation);
+  return result;
+}
+
+std::vector<cv::Vec3f> border_colors(const cv::Mat& color) {
+  std::vector<cv::Vec3f> list;
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x)
+      if (x < 2 || y < 2 || x >= color.cols - 2 || y >= color.rows - 2)
+        list.push_back(cv::Vec3f(color.at<cv::Vec3b>(y, x)));
+  return list;
+}
+
+// The largest component of a mask, without holes that are small.
+cv::Mat main_component(const cv::Mat& mask) {
+  cv::Mat labels, stats, centers;
+  const int n = cv::connectedComponentsWithStats(mask, labels, stats, centers);
+  int best = 0;
+  for (int k = 1; k < n; ++k)
+    if (best == 0 || stats.at<int>(k, cv::CC_STAT_AREA) > stats.at<int>(best, cv::CC_STAT_AREA)) best = k;
+  if (best == 0) return cv::Mat::zeros(mask.size(), CV_8U);
+  cv::Mat result = labels == best;
+  const cv::Mat outside = ~result;
+  const int area = stats.at<int>(best, cv::CC_STAT_AREA),
+            holes = cv::connectedComponentsWithStats(outside, labels, stats, centers);
+  for (int k = 1; k < holes; ++k)
+    if (stats.at<int>(k, cv::CC_STAT_AREA) < area / 200) result.setTo(255, labels == k);
+  return result;
+}
+
+// How unlike the border's colours each pixel is, in the border's own spread; 32F.
+cv::Mat unlike_border(const cv::Mat& color) {
+  const std::vector<cv::Vec3f> border = border_colors(color);
+  // A few of the border's colours, each farthest from those before.
+  std::vector<cv::Vec3f> palette{border.front()};
+  std::vector<float> nearest(border.size(), 1e30f);
+  for (int k = 1; k < 12; ++k) {
+    for (size_t i = 0; i < border.size(); ++i) {
+      const cv::Vec3f d = border[i] - palette.back();
+      nearest[i] = std::min(nearest[i], d.dot(d));
+    }
+    palette.push_back(border[std::max_element(nearest.begin(), nearest.end()) - nearest.begin()]);
+  }
+  cv::Mat result(color.size(), CV_32F);
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x) {
+      float least = 1e30f;
+      for (const cv::Vec3f& p : palette) {
+        const cv::Vec3f d = cv::Vec3f(color.at<cv::Vec3b>(y, x)) - p;
+        least = std::min(least, d.dot(d));
+      }
+      result.at<float>(y, x) = std::sqrt(least);
+    }
+  return result;
+}
+
+cv::Mat first_guess(const cv::Mat& color) {
+  cv::Mat unlike = unlike_border(color), bytes, mask;
+  cv::GaussianBlur(unlike, unlike, {0, 0}, 1.5);
+  cv::min(unlike, 255, unlike);
+  unlike.convertTo(bytes, CV_8U);
+  cv::threshold(bytes, mask, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+  mask = main_component(mask);
+  const double share = cv::countNonZero(mask) / double(mask.total());
+  if (share > 0.03 && share < 0.9) return mask;
+  mask = cv::Mat::zeros(color.size(), CV_8U);  // no idea: the middle
+  cv::ellipse(mask, {color.cols / 2, color.rows / 2}, {color.cols * 3 / 10, color.rows * 4 / 10}, 0, 0, 360, 255,
+              cv::FILLED);
+  return mask;
+}
+
+// Segmentation and depth synthesised together, in the examples' small frame.
+cv::Mat synthesized(const DepthQuery& query, const Placement& placement, Gallery& gallery,
+                    const DepthOptions& options) {
+  const cv::Size frame = gallery.image_size();
+  const cv::Mat all(frame, CV_8U, cv::Scalar(255));
+  const PatchImage look = place(query, placement, frame);
+  DepthQuery whole = query;
+  whole.mask = cv::Mat(query.color.size(), CV_8U, cv::Scalar(255));
+  cv::Mat guess;
+  look.mask.convertTo(guess, CV_32F, 1 / 255.);
+  PatchImage q = thumbnail({{place(whole, placement, frame).planes[0]}, all}, Gallery::thumbnail_size);
+  q.planes.push_back(thumbnail({{guess}, all}, Gallery::thumbnail_size).planes[0]);
+  const PatchImage small_look = thumbnail(look, Gallery::thumbnail_size);
+
+  std::vector<std::pair<double, int>> order;
+  for (int k = 0; k < gallery.size(); ++k)
+    order.push_back({image_difference(small_look, gallery.small(k, options.views[0])), k});
+  std::sort(order.begin(), order.end());
+  std::vector<PatchImage> examples;
+  for (int i = 0; i < std::min<int>(options.examples, int(order.size())); ++i) {
+    const PatchImage& e = gallery.small(order[i].second, options.views[0]);
+    cv::Mat inside;
+    e.mask.convertTo(inside, CV_32F, 1 / 255.);
+    examples.push_back({{extend(e.planes[0], e.mask), inside, inside, extend(e.planes[1], e.mask)},
+                        cv::Mat(e.mask.size(), CV_8U, cv::Scalar(255))});
+  }
+  SynthesisOptions o = synthesis_options(options);
+  o.channels = {{0, options.intensity, false, true},
+                {1, 1, false, false},
+                {2, 1, false, false},
+                {3, options.depth, false, false}};
+  o.synthesized = {2, 3};
+  o.patch_sizes = {o.patch_sizes.front()};
+  o.longest_coarsest = 0;
+  o.silhouette = 0;
+  Progress quiet;
+  cv::Mat small = synthesize(q, examples, o, {}, quiet).planes[0], full;
+  cv::resize(small, full, frame, 0, 0, cv::INTER_LINEAR);
+  return full;
+}
+
+}  // namespace
+
+cv::Mat plain_background_mask(const cv::Mat& color) {
+  const std::vector<cv::Vec3f> border = border_colors(color);
+  std::vector<float> channel(border.size());
+  cv::Vec3f middle;
+  for (int c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < border.size(); ++i) channel[i] = border[i][c];
+    std::nth_element(channel.begin(), channel.begin() + long(channel.size() / 2), channel.end());
+    middle[c] = channel[channel.size() / 2];
+  }
+  size_t alike = 0;
+  const auto is_background = [&](const cv::Vec3f& v) { return cv::norm(v - middle, cv::NORM_INF) <= 6; };
+  for (const cv::Vec3f& v : border) alike += is_background(v);
+  if (double(alike) < 0.9 * double(border.size())) return {};
+  cv::Mat background(color.size(), CV_8U);
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x)
+      background.at<uchar>(y, x) = is_background(cv::Vec3f(color.at<cv::Vec3b>(y, x))) ? 255 : 0;
+  // Only what hangs together with the border: an object may have that colour too.
+  cv::Mat labels, mask(color.size(), CV_8U, cv::Scalar(255));
+  const int n = cv::connectedComponents(background, labels, 4);
+  std::vector<char> touches(n, 0);
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x)
+      if (x == 0 || y == 0 || x == color.cols - 1 || y == color.rows - 1) touches[labels.at<int>(y, x)] = 1;
+  for (int y = 0; y < color.rows; ++y)
+    for (int x = 0; x < color.cols; ++x)
+      if (labels.at<int>(y, x) > 0 && touches[labels.at<int>(y, x)]) mask.at<uchar>(y, x) = 0;
+  return mask;
+}
+
+cv::Mat segment(const DepthQuery& query, Gallery& gallery, const DepthOptions& options, Progress& progress) {
+  DepthQuery guess;
+  guess.color = smaller(query.color, cv::INTER_AREA);
+  cv::Mat within(guess.color.size(), CV_8U, cv::Scalar(255));
+  if (!query.mask.empty()) within = smaller(query.mask, cv::INTER_NEAREST);
+  guess.mask = first_guess(guess.color) & within;
+  if (cv::countNonZero(guess.mask) < 16) guess.mask = within;
+  progress.at(0.2);
+
+  const Placement placement = align_query(guess, gallery, options);
+  const cv::Mat inside = synthesized(guess, placement, gallery, options);
+  progress.at(0.6);
+  cv::Mat share;
+  cv::warpAffine(inside, share, placement.matrix(), guess.color.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
+
+  cv::Mat labels(share.size(), CV_8U), backgrounds, foregrounds;
+  for (int y = 0; y < share.rows; ++y)
+    for (int x = 0; x < share.cols; ++x) {
+      const float s = share.at<float>(y, x);
+      const bool out = !within.at<uchar>(y, x) || s < 0.02f;
+      labels.at<uchar>(y, x) = uchar(out         ? cv::GC_BGD
+                                     : s > 0.97f ? cv::GC_FGD
+                                     : s > 0.5f  ? cv::GC_PR_FGD
+                                                 : cv::GC_PR_BGD);
+    }
+  // What the examples leave open at the silhouette is open, whatever they say.
+  cv::Mat core, reach;
+  cv::erode(labels == cv::GC_FGD, core, cv::Mat::ones(9, 9, CV_8U));
+  cv::dilate(labels != cv::GC_BGD, reach, cv::Mat::ones(9, 9, CV_8U));
+  labels.setTo(cv::GC_PR_FGD, (labels == cv::GC_FGD) & ~core);
+  labels.setTo(cv::GC_PR_BGD, (labels == cv::GC_BGD) & reach & within);
+  const bool both = cv::countNonZero((labels == cv::GC_BGD) | (labels == cv::GC_PR_BGD)) > 0 &&
+                    cv::countNonZero((labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD)) > 0;
+  if (both) {
+    cv::theRNG().state = 1;  // its clustering starts from random colours
+    cv::grabCut(guess.color, labels, {}, backgrounds, foregrounds, 4, cv::GC_INIT_WITH_MASK);
+  }
+  progress.at(0.9);
+  cv::Mat mask = main_component((labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD)), result;
+  // Where colours do not tell object and background apart, the examples alone do.
+  const cv::Mat by_examples = (share > 0.5f) & within;
+  if (cv::countNonZero(mask & by_examples) < 0.6 * cv::countNonZero(mask | by_examples))
+    mask = main_component(by_examples);
+  if (cv::countNonZero(mask) < int(mask.total() / 200))
+    throw UserError("No object was found in the image; give a mask that shows where it is.");
+  cv::resize(mask, result, query.color.size(), 0, 0, cv::INTER_LINEAR);
+  return result > 127;
+}
+
+}  // namespace parts
