@@ -200,19 +200,21 @@ void log_result(const DepthResult& r, Progress& progress) {
   log_value(progress, "scale", r.scale);
   log_value(progress, "rotation", r.rotation);
   log_value(progress, "levels", double(r.plausibility.size()));
-  for (size_t l = 0; l < r.plausibility.size(); ++l)
-    for (size_t i = 0; i < r.plausibility[l].size(); ++i)
-      log_value(progress, ("plausibility_" + std::to_string(l) + "_" + std::to_string(i)).c_str(),
-                r.plausibility[l][i]);
+  std::ostringstream plausibility, examples;
+  for (size_t l = 0; l < r.plausibility.size(); ++l) {
+    if (l > 0) plausibility << "; ";
+    for (size_t i = 0; i < r.plausibility[l].size(); ++i) plausibility << (i ? " " : "") << r.plausibility[l][i];
+  }
+  log_value(progress, "plausibility", plausibility.str());
   std::vector<size_t> order(r.used.size());
   for (size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return r.used[a].patches > r.used[b].patches; });
   for (size_t k : order)
     if (r.used[k].patches > 0)
-      log_value(
-          progress, ("example_" + std::to_string(k)).c_str(),
-          r.used[k].object + " " + degrees(r.used[k].view) + " gave " + std::to_string(r.used[k].patches) + " patches");
+      examples << (examples.tellp() > 0 ? "; " : "") << r.used[k].object << " " << degrees(r.used[k].view) << " "
+               << r.used[k].patches;
+  log_value(progress, "examples_used", examples.str());
   log_value(progress, "foreground_pixels", cv::countNonZero(r.mask));
   log_value(progress, "mean_patch_distance", cv::mean(r.distance, r.mask)[0]);
   log_value(progress, "strangeness", r.strangeness);

@@ -76,8 +76,9 @@ cv::Mat unlike_border(const cv::Mat& color) {
 }
 
 cv::Mat first_guess(const cv::Mat& color) {
-  cv::Mat unlike = unlike_border(color), bytes, mask;
-  cv::GaussianBlur(unlike, unlike, {0, 0}, 1.5);
+  cv::Mat smooth, bytes, mask;
+  cv::GaussianBlur(color, smooth, {0, 0}, 2);  // of a rough background, what it looks like from afar
+  cv::Mat unlike = unlike_border(smooth);
   cv::min(unlike, 255, unlike);
   unlike.convertTo(bytes, CV_8U);
   cv::threshold(bytes, mask, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);

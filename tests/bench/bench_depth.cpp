@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth from one image: speed, the search beside the exact one, and accuracy,
+// leaving one object out, beside the class mean and the nearest example.
+// bench_depth [speed|search|accuracy|views|sizes|ablations] [EVERY]: of the
+// queries only each EVERY-th.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <random>
+
+#include "bench/measure.h"
+#include "database/model_database.h"
+#include "depth/alignment.h"
+#include "depth/gallery.h"
+#include "depth/reconstruct_depth.h"
+#include "depth/view_search.h"
+#include "mappings/examples.h"
+#include "synthesis/pyramid.h"
+
+using namespace parts;
+using namespace parts::bench;
+
+namespace {
+
+/// A class of data/NAME, one object kept out.
+class Others : public ExampleSource {
+ public:
+  Others(ExampleSource& all, int without) : all_(all), without_(without) {}
+  int size() const override { return all_.size() - (without_ >= 0); }
+  const std::string& name(int k) const override { return all_.name(of(k)); }
+  cv::Size image_size() const override { return all_.image_size(); }
+  std::vector<View> views(int k) const override { return all_.views(of(k)); }
+  Example get(int k, const View& view) override { return all_.get(of(k), view); }
+  const ClassPreset& preset() const override { return all_.preset(); }
+
+ private:
+  int of(int k) const { return without_ >= 0 && k >= without_ ? k + 1 : k; }
+  ExampleSource& all_;
+  int without_;
+};
+
+std::unique_ptr<ExampleSource> open(const std::string& name, int width = 150, int height = 200) {
+  Progress progress;
+  ExampleOptions options;
+  options.width = width, options.height = height;
+  return open_examples(std::string(PARTS_DATA) + "/" + name, {{0, 0}}, options, progress);
+}
+
+struct Error {
+  double offset = 0, scale = 0, angle = 0;  ///< shares of the depth range, degrees
+  void add(const Error& e, double share) {
+    offset += e.offset * share, scale += e.scale * share, angle += e.angle * share;
+  }
+};
+
+cv::Vec3f normal(const cv::Mat& d, int x, int y) {
+  const cv::Vec3f n((d.at<float>(y, x + 1) - d.at<float>(y, x - 1)) / 2,
+                    (d.at<float>(y + 1, x) - d.at<float>(y - 1, x)) / 2, 1);
+  return n / cv::norm(n);
+}
+
+/// Both in pixels, over the mask: after aligning the offset, and the scale too;
+/// and the mean angle between normals.
+Error compare(const cv::Mat& depth, const cv::Mat& truth, const cv::Mat& mask) {
+  double low, high, n = 0, sd = 0, st = 0, sdd = 0, sdt = 0, stt = 0, angle = 0, normals = 0;
+  cv::minMaxLoc(truth, &low, &high, nullptr, nullptr, mask);
+  const auto in = [&](int x, int y) { return mask.at<uchar>(y, x) != 0; };
+  for (int y = 1; y + 1 < mask.rows; ++y)
+    for (int x = 1; x + 1 < mask.cols; ++x) {
+      if (!in(x, y)) continue;
+      const double d = depth.at<float>(y, x), t = truth.at<float>(y, x);
+      ++n, sd += d, st += t, sdd += d * d, sdt += d * t, stt += t * t;
+      if (!in(x - 1, y) || !in(x + 1, y) || !in(x, y - 1) || !in(x, y + 1)) continue;
+      ++normals, angle += std::acos(std::min(1.f, normal(depth, x, y).dot(normal(truth, x, y))));
+    }
+  const double vd = sdd - sd * sd / n, vt = stt - st * st / n, c = sdt - sd * st / n, s = vd > 0 ? c / vd : 0;
+  return {std::sqrt(std::max(0., vd + vt - 2 * c) / n) / (high - low),
+          std::sqrt(std::max(0., vt - 2 * s * c + s * s * vd) / n) / (high - low), angle / normals * 180 / CV_PI};
+}
+
+/// An example's depth, moved so that its centroid lies on the query's.
+cv::Mat moved(const cv::Mat& depth, const Example& e, const Example& query) {
+  const cv::Point2d by = centroid(query.mask) - centroid(e.mask);
+  const cv::Mat full = extend(depth, e.mask);
+  cv::Mat result(full.size(), CV_32F);
+  for (int y = 0; y < full.rows; ++y)
+    for (int x = 0; x < full.cols; ++x)
+      result.at<float>(y, x) = full.at<float>(std::clamp(int(std::lround(y - by.y)), 0, full.rows - 1),
+                                              std::clamp(int(std::lround(x - by.x)), 0, full.cols - 1));
+  return result;
+}
+
+struct Score {
+  Error ours, mean, nearest, back, back_mean;
+  double wall = 0, cpu = 0, angle = 0;
+  int count = 0, found = 0;
+};
+
+/// One query, and what the others say of it.
+void measure(ExampleSource& all, int k, const View& view, const DepthOptions& options, double share, Score& score) {
+  Others others(all, k);
+  const Example q = all.get(k, view);
+  Progress quiet;
+  const Stopwatch watch;
+  const DepthResult r = reconstruct_depth({q.image, q.mask}, others, options, quiet);
+  score.wall += watch.wall() * share, score.cpu += watch.cpu() * share;
+
+  const double scale = q.camera.scale;
+  const PatchImage look{{intensity(q.image)}, q.mask};
+  cv::Mat mean = cv::Mat::zeros(q.depth.size(), CV_32F), back = mean.clone(), nearest;
+  double least = 1e30;
+  for (int i = 0; i < others.size(); ++i) {
+    const Example e = others.get(i, view);
+    const double middle = cv::mean(e.depth, e.mask)[0];
+    const cv::Mat depth = moved((e.depth - middle) * e.camera.scale, e, q);
+    mean += depth / others.size();
+    if (!e.back_depth.empty()) back += moved((e.back_depth - middle) * e.camera.scale, e, q) / others.size();
+    const double d = image_difference(look, {{intensity(e.image)}, e.mask});
+    if (d < least) least = d, nearest = depth;
+  }
+  score.ours.add(compare(r.depth * r.camera.scale, q.depth * scale, q.mask), share);
+  score.mean.add(compare(mean, q.depth * scale, q.mask), share);
+  score.nearest.add(compare(nearest, q.depth * scale, q.mask), share);
+  if (options.back) {
+    score.back.add(compare(r.back_depth * r.camera.scale, q.back_depth * scale, q.mask), share);
+    score.back_mean.add(compare(back, q.back_depth * scale, q.mask), share);
+  }
+  const double away = angle_between(r.view, view);
+  score.angle += away * share;
+  score.found += away <= 5;
+  ++score.count;
+}
+
+std::string share(double value) { return text(100 * value, 3) + " %"; }
+
+void accuracy(int every) {
+  Table table("Depth, one object left out, 150 x 200: error as a share of the depth range",
+              {"class", "queries", "ours", "of mean", "of nearest", "scaled", "of mean", "of nearest", "normals",
+               "mean's", "nearest's", "back", "of mean", "wall s", "cpu s"});
+  for (const char* name : {"heads", "hands", "bodies"}) {
+    const auto all = open(name);
+    DepthOptions options;
+    options.update_views = options.align = false;
+    options.back = true;
+    Score s;
+    const int n = (all->size() + every - 1) / every;
+    for (int k = 0; k < all->size(); k += every) measure(*all, k, {0, 0}, options, 1. / n, s);
+    table.row({name, count(s.count), share(s.ours.offset), text(s.ours.offset / s.mean.offset),
+               text(s.ours.offset / s.nearest.offset), share(s.ours.scale), text(s.ours.scale / s.mean.scale),
+               text(s.ours.scale / s.nearest.scale), text(s.ours.angle), text(s.mean.angle), text(s.nearest.angle),
+               share(s.back.offset), text(s.back.offset / s.back_mean.offset), text(s.wall), text(s.cpu)});
+  }
+  table.note("mean: of all others, centroids aligned; nearest: the other whose image is most like the query's.");
+}
+
+void views(int every) {
+  Table table(
+      "Heads from up to 35 degrees of yaw and 25 of pitch",
+      {"view", "queries", "within 5 degrees", "mean angle", "error", "of mean", "of nearest", "wall s", "cpu s"});
+  const auto all = open("heads");
+  for (const bool known : {true, false}) {
+    std::mt19937 engine(5);
+    const auto uniform = [&](double most) { return most * (engine() / 2147483648.0 - 1); };
+    Score s;
+    const int n = (all->size() + every - 1) / every;
+    for (int k = 0; k < all->size(); k += every) {
+      const double yaw = uniform(35), pitch = uniform(25);
+      DepthOptions options;
+      options.align = false;
+      options.update_views = !known;
+      if (known) options.views = {{yaw, pitch}};
+      measure(*all, k, {yaw, pitch}, options, 1. / n, s);
+    }
+    table.row({known ? "known" : "searched", count(s.count), count(s.found), text(s.angle), share(s.ours.offset),
+               text(s.ours.offset / s.mean.offset), text(s.ours.offset / s.nearest.offset), text(s.wall), text(s.cpu)});
+  }
+}
+
+void ablations(int every) {
+  Table table("Heads seen from (0, -22) (thesis Fig. 18, 19), error as a share of the depth range",
+              {"variant", "error", "of mean", "normals"});
+  const auto all = open("heads");
+  const std::vector<View> four{{-20, 0}, {20, 0}, {-20, -40}, {20, -40}};
+  DepthOptions plain;
+  plain.align = false;
+  std::vector<std::pair<std::string, DepthOptions>> variants;
+  const auto add = [&](const char* name, std::vector<View> from, bool update,
+                       const std::function<void(DepthOptions&)>& change) {
+    DepthOptions o = plain;
+    o.views = std::move(from), o.update_views = o.update_objects = update;
+    change(o);
+    variants.push_back({name, o});
+  };
+  const auto nothing = [](DepthOptions&) {};
+  add("one wrong view (0, 0)", {{0, 0}}, false, nothing);
+  add("four fixed views", four, false, nothing);
+  add("four views, updated", four, true, nothing);
+  add("the view known", {{0, -22}}, false, nothing);
+  add("... without iterations", {{0, -22}}, false, [](DepthOptions& o) { o.max_iterations = 1, o.patch_sizes = {9}; });
+  add("... without position", {{0, -22}}, false, [](DepthOptions& o) { o.position = 0; });
+  add("... without silhouettes", {{0, -22}}, false, [](DepthOptions& o) { o.silhouette = 0; });
+  add("... without depth", {{0, -22}}, false, [](DepthOptions& o) { o.depth = 0; });
+  const int n = (all->size() + every - 1) / every;
+  for (const auto& [name, options] : variants) {
+    Score s;
+    for (int k = 0; k < all->size(); k += every) measure(*all, k, {0, -22}, options, 1. / n, s);
+    table.row({name, share(s.ours.offset), text(s.ours.offset / s.mean.offset), text(s.ours.angle)});
+  }
+}
+
+void sizes(int every) {
+  Table table("Image size (heads; examples rendered at that size)",
+              {"size", "error", "of mean", "normals", "wall s", "cpu s", "cpu s a megapixel"});
+  for (const int width : {75, 150, 300, 600}) {
+    const auto all = open("heads", width, width * 4 / 3);
+    DepthOptions options;
+    options.update_views = options.align = false;
+    Score s;
+    const int step = std::max(every, 6), n = (all->size() + step - 1) / step;
+    for (int k = 0; k < all->size(); k += step) measure(*all, k, {0, 0}, options, 1. / n, s);
+    table.row({std::to_string(width) + " x " + std::to_string(width * 4 / 3), share(s.ours.offset),
+               text(s.ours.offset / s.mean.offset), text(s.ours.angle), text(s.wall), text(s.cpu),
+               text(s.cpu / (width * width * 4 / 3 * 1e-6))});
+  }
+}
+
+void speed() {
+  Table table("The thesis' size: 200 x 150, 12 examples, 3 levels 5/7/9, objects and views updated",
+              {"foreground", "wall s", "cpu s", "peak", "verdict"});
+  const Child masked = in_child(
+      [] {
+        const auto all = open("heads", 200, 150);
+        Others others(*all, 0);
+        const Example q = all->get(0, {10, 5});
+        Progress quiet;
+        const Stopwatch watch;
+        reconstruct_depth({q.image, q.mask}, others, {}, quiet);
+        return std::vector<double>{watch.wall(), watch.cpu()};
+      },
+      120);
+  if (masked.ended)
+    table.row({"masked", text(masked.figures[0]), text(masked.figures[1]), megabytes(masked.peak),
+               verdict(masked.figures[0] < 2 && masked.peak < 500e6)});
+  const Child full = in_child(
+      [] {
+        // Every pixel of query and examples is foreground: a plane with what the heads look like.
+        const auto all = open("heads", 200, 150);
+        std::vector<PatchImage> examples;
+        for (int k = 0; k < 13; ++k) {
+          const Example e = all->get(k, {0, 0});
+          const double middle = cv::mean(e.depth, e.mask)[0];
+          examples.push_back({{extend(intensity(e.image), e.mask), extend((e.depth - middle) * e.camera.scale, e.mask)},
+                              cv::Mat(e.mask.size(), CV_8U, cv::Scalar(255))});
+        }
+        PatchImage query = examples.back();
+        query.planes[1] = cv::Mat();
+        examples.pop_back();
+        Progress quiet;
+        const Stopwatch watch;
+        synthesize(query, examples, synthesis_options({}), {}, quiet);
+        return std::vector<double>{watch.wall(), watch.cpu()};
+      },
+      120);
+  if (full.ended)
+    table.row({"full frame", text(full.figures[0]), text(full.figures[1]), megabytes(full.peak),
+               verdict(full.figures[0] < 4 && full.peak < 500e6)});
+  table.note("full frame: the optimisation alone, every pixel foreground. The thesis took 40 minutes.");
+}
+
+void search(int every) {
+  Table table("The search beside the exact nearest neighbour: heads, 150 x 200, 12 examples, 9 x 9, depth known",
+              {"", "mean squared distance", "of exact", "cpu us a query"});
+  const auto all = open("heads");
+  std::vector<PatchImage> images;
+  for (int k = 0; k < 13; ++k) {
+    const Example e = all->get(k, {0, 0});
+    const double middle = cv::mean(e.depth, e.mask)[0];
+    images.push_back({{intensity(e.image), (e.depth - middle) * e.camera.scale}, e.mask});
+  }
+  double squares[2] = {0, 0}, cpu[2] = {0, 0}, queries = 0;
+  for (int k = 0; k < 13; k += std::max(12, every)) {
+    std::vector<PatchImage> others = images;
+    others.erase(others.begin() + k);
+    SynthesisOptions o = synthesis_options({});
+    o.synthesized = {};
+    o.patch_sizes = {9};
+    o.longest_coarsest = 0;
+    o.max_iterations = 1;
+    for (const bool exact : {false, true}) {
+      o.exact_search = exact;
+      Progress quiet;
+      const Stopwatch watch;
+      const SynthesisResult r = synthesize(images[k], others, o, {}, quiet);
+      cpu[exact] += watch.cpu();
+      squares[exact] += cv::norm(r.distance, cv::NORM_L2SQR);
+    }
+    queries += cv::countNonZero(images[k].mask);
+  }
+  for (const bool exact : {false, true})
+    table.row({exact ? "exact" : "kd-tree, propagated", text(squares[exact] / queries),
+               text(squares[exact] / squares[1]), text(cpu[exact] / queries * 1e6)});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (std::string(PARTS_DATA).empty() || !std::filesystem::exists(std::string(PARTS_DATA) + "/heads")) {
+    std::cout << "Skipped: no folder of optional models (PARTS_DATA) with heads in it.\n";
+    return 0;
+  }
+  const std::string what = argc > 1 ? argv[1] : "";
+  const int every = std::max(1, argc > 2 ? std::atoi(argv[2]) : 1);
+  if (what.empty() || what == "speed") speed();
+  if (what.empty() || what == "search") search(every);
+  if (what.empty() || what == "accuracy") accuracy(every);
+  if (what.empty() || what == "views") views(every);
+  if (what.empty() || what == "sizes") sizes(every);
+  if (what.empty() || what == "ablations") ablations(every);
+}
