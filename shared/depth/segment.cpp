@@ -49,45 +49,92 @@ cv::Mat main_component(const cv::Mat& mask) {
   return result;
 }
 
-// How unlike the border's colours each pixel is, in the border's own spread; 32F.
-cv::Mat unlike_border(const cv::Mat& color) {
-  const std::vector<cv::Vec3f> border = border_colors(color);
-  // A few of the border's colours, each farthest from those before.
-  std::vector<cv::Vec3f> palette{border.front()};
-  std::vector<float> nearest(border.size(), 1e30f);
-  for (int k = 1; k < 12; ++k) {
-    for (size_t i = 0; i < border.size(); ++i) {
-      const cv::Vec3f d = border[i] - palette.back();
-      nearest[i] = std::min(nearest[i], d.dot(d));
+// A silhouette laid over the image: how well intensities inside agree with the
+// example's (correlation), and how much the image changes along its rim.
+struct Template {
+  std::vector<cv::Point> inside, rim;
+  std::vector<float> value;  ///< of the example, a pixel inside
+  cv::Mat mask;
+};
+
+Template make_template(const PatchImage& example, double longest_side) {
+  cv::Mat points;
+  cv::findNonZero(example.mask, points);
+  const cv::Rect box = cv::boundingRect(points);
+  const double scale = longest_side / std::max(box.width, box.height);
+  const cv::Size size(std::max(4, int(std::lround(box.width * scale))),
+                      std::max(4, int(std::lround(box.height * scale))));
+  Template t;
+  cv::Mat grey, core;
+  cv::resize(example.mask(box), t.mask, size, 0, 0, cv::INTER_LINEAR);
+  cv::resize(extend(example.planes[0], example.mask)(box), grey, size, 0, 0, cv::INTER_LINEAR);
+  t.mask = t.mask > 127;
+  cv::erode(t.mask, core, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      if (!t.mask.at<uchar>(y, x)) continue;
+      if (!core.at<uchar>(y, x)) t.rim.push_back({x, y});
+      if ((x + y) % 2) continue;
+      t.inside.push_back({x, y});
+      t.value.push_back(grey.at<float>(y, x));
     }
-    palette.push_back(border[std::max_element(nearest.begin(), nearest.end()) - nearest.begin()]);
-  }
-  cv::Mat result(color.size(), CV_32F);
-  for (int y = 0; y < color.rows; ++y)
-    for (int x = 0; x < color.cols; ++x) {
-      float least = 1e30f;
-      for (const cv::Vec3f& p : palette) {
-        const cv::Vec3f d = cv::Vec3f(color.at<cv::Vec3b>(y, x)) - p;
-        least = std::min(least, d.dot(d));
-      }
-      result.at<float>(y, x) = std::sqrt(least);
-    }
-  return result;
+  return t;
 }
 
-cv::Mat first_guess(const cv::Mat& color) {
-  cv::Mat smooth, bytes, mask;
-  cv::GaussianBlur(color, smooth, {0, 0}, 2);  // of a rough background, what it looks like from afar
-  cv::Mat unlike = unlike_border(smooth);
-  cv::min(unlike, 255, unlike);
-  unlike.convertTo(bytes, CV_8U);
-  cv::threshold(bytes, mask, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
-  mask = main_component(mask);
-  const double share = cv::countNonZero(mask) / double(mask.total());
-  if (share > 0.03 && share < 0.9) return mask;
-  mask = cv::Mat::zeros(color.size(), CV_8U);  // no idea: the middle
-  cv::ellipse(mask, {color.cols / 2, color.rows / 2}, {color.cols * 3 / 10, color.rows * 4 / 10}, 0, 0, 360, 255,
-              cv::FILLED);
+double fit(const Template& t, const cv::Mat& grey, const cv::Mat& change, double mean_change, int left, int top) {
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0, rim = 0;
+  for (size_t i = 0; i < t.inside.size(); ++i) {
+    const double u = t.value[i], v = grey.at<float>(top + t.inside[i].y, left + t.inside[i].x);
+    ++n, a += u, b += v, aa += u * u, bb += v * v, ab += u * v;
+  }
+  for (const cv::Point& p : t.rim) rim += std::min(4 * mean_change, double(change.at<float>(top + p.y, left + p.x)));
+  const double va = aa - a * a / n, vb = bb - b * b / n;
+  const double correlation = va > 1e-9 && vb > 1e-9 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
+  return correlation + 0.5 * rim / (mean_change * double(t.rim.size()));
+}
+
+// Where, and how large, an example's silhouette fits the image best.
+cv::Mat find_by_examples(const cv::Mat& color, Gallery& gallery, const DepthOptions& options) {
+  const double shrink = std::max(color.cols, color.rows) / 64.;
+  cv::Mat small;
+  cv::resize(color, small, {std::max(8, int(color.cols / shrink)), std::max(8, int(color.rows / shrink))}, 0, 0,
+             cv::INTER_AREA);
+  const cv::Mat grey = intensity(small);
+  cv::Mat change = cv::Mat::zeros(small.size(), CV_32F);
+  for (int y = 1; y + 1 < small.rows; ++y)
+    for (int x = 1; x + 1 < small.cols; ++x) {
+      const cv::Vec3f dx = cv::Vec3f(small.at<cv::Vec3b>(y, x + 1)) - cv::Vec3f(small.at<cv::Vec3b>(y, x - 1));
+      const cv::Vec3f dy = cv::Vec3f(small.at<cv::Vec3b>(y + 1, x)) - cv::Vec3f(small.at<cv::Vec3b>(y - 1, x));
+      change.at<float>(y, x) = std::sqrt(dx.dot(dx) + dy.dot(dy));
+    }
+  const double mean_change = std::max(1e-3, cv::mean(change)[0]);
+  double best = -1e30;
+  cv::Mat result;
+  const int objects = std::min(8, gallery.size());
+  for (int i = 0; i < objects; ++i)
+    for (double side = 0.4; side < 1.01; side += 0.075) {
+      const Template t = make_template(gallery.small(i * gallery.size() / objects, options.views[0]), side * 64);
+      if (t.inside.empty()) continue;
+      for (int top = 0; top + t.mask.rows <= grey.rows; top += 2)
+        for (int left = 0; left + t.mask.cols <= grey.cols; left += 2) {
+          const double score = fit(t, grey, change, mean_change, left, top) * std::pow(side, 0.25);
+          if (score <= best) continue;
+          best = score;
+          result = cv::Mat::zeros(grey.size(), CV_8U);
+          t.mask.copyTo(result(cv::Rect(left, top, t.mask.cols, t.mask.rows)));
+        }
+    }
+  if (result.empty()) return {};
+  cv::Mat full;
+  cv::resize(result, full, color.size(), 0, 0, cv::INTER_LINEAR);
+  return full > 127;
+}
+
+cv::Mat first_guess(const cv::Mat& color, Gallery& gallery, const DepthOptions& options) {
+  cv::Mat mask = plain_background_mask(color);
+  if (!mask.empty()) mask = main_component(mask);
+  if (mask.empty() || cv::countNonZero(mask) < int(mask.total() / 50)) mask = find_by_examples(color, gallery, options);
+  if (mask.empty()) mask = cv::Mat(color.size(), CV_8U, cv::Scalar(255));
   return mask;
 }
 
@@ -169,7 +216,7 @@ cv::Mat segment(const DepthQuery& query, Gallery& gallery, const DepthOptions& o
   guess.color = smaller(query.color, cv::INTER_AREA);
   cv::Mat within(guess.color.size(), CV_8U, cv::Scalar(255));
   if (!query.mask.empty()) within = smaller(query.mask, cv::INTER_NEAREST);
-  guess.mask = first_guess(guess.color) & within;
+  guess.mask = first_guess(guess.color, gallery, options) & within;
   if (cv::countNonZero(guess.mask) < 16) guess.mask = within;
   progress.at(0.2);
 

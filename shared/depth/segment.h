@@ -10,8 +10,8 @@ namespace parts {
 /// take little; nothing where the border has many colours.
 cv::Mat plain_background_mask(const cv::Mat& color);
 
-/// Finds the object of the class in an image (thesis 6.2): a first guess from the
-/// colours of the border, then segmentation and depth synthesised together from
+/// Finds the object of the class in an image (thesis 6.2): a first guess from a
+/// plain border or by laying examples over the image, then segmentation and depth synthesised together from
 /// the examples, each of which knows its foreground, then the cut that colours
 /// and synthesised segmentation agree on (Rother et al. 2004, "GrabCut").
 /// @param query  its mask, where not empty, holds the object
