@@ -157,6 +157,49 @@ void measure(const Class& c, const std::vector<Task>& tasks, int most, const fs:
   table.note("Errors: from the place's landmark to the model's, in radii of the ball removed; right: below 0.5.");
 }
 
+/// A database of so many models: those of the class, over and over with other matrices.
+std::string repeated(const Class& c, int models, const fs::path& folder) {
+  MlpProject project;
+  for (int m = 0; m < models; ++m) {
+    MlpMesh mesh{std::to_string(m), c.files[std::size_t(m) % c.files.size()]};
+    mesh.matrix(0, 3) = m;
+    project.meshes.push_back(mesh);
+  }
+  const std::string path = (folder / (std::to_string(models) + ".mlp")).string();
+  write_mlp(project, path);
+  return path;
+}
+
+void measure_time(const Class& c, const fs::path& folder) {
+  if (c.files.empty()) return;
+  Table table("Time and memory: " + c.name,
+              {"Models", "Search", "Wall s", "Processor s", "Peak memory", "Progress calls"});
+  for (int models : {24, 125, 250, 500})
+    for (const char* search : {"first", "later"}) {
+      const std::string path = repeated(c, models, folder);
+      const Child child = in_child(
+          [&] {
+            SearchQuery query;
+            query.mesh = test::without_ball(c.meshes[0], c.place(0), 0.09 * c.meshes[0].bounds().diagonal().norm());
+            const Vec3 half = Vec3::Constant(0.12 * c.meshes[0].bounds().diagonal().norm());
+            query.region = Box(c.place(0) - half, c.place(0) + half);
+            double calls = 0;
+            Progress progress([&](int, const char*) { return ++calls > 0; });
+            const Stopwatch watch;
+            const ModelDatabase database(path, progress);
+            find_similar(query, database, {}, progress);
+            return std::vector<double>{watch.wall(), watch.cpu(), calls};
+          },
+          300);
+      if (child.ended)
+        table.row({std::to_string(models), search, text(child.figures[0]), text(child.figures[1]),
+                   megabytes(child.peak), count(child.figures[2])});
+      else
+        table.row({std::to_string(models), search, "did not end"});
+    }
+  table.note("The same models over and over, each with a matrix of its own. First: with no cache of them there.");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -191,5 +234,14 @@ int main(int argc, char** argv) {
     measure(same_vertices("hands, finger", files_of(data + "/hands", ".obj"), [](const Vec3& p) { return p.y(); }),
             {{"turned, scaled", 0.08}}, most, folder);
   if (wanted("busts")) measure(busts(folder, 12), usual, most, folder);
+  if (wanted("time")) {
+    fs::create_directories(folder / "time");
+    measure_time(same_vertices("heads", files_of(data + "/heads", ".obj"), [](const Vec3& p) { return p.z(); }),
+                 folder / "time");
+    fs::remove_all(folder / "time"), fs::create_directories(folder / "time");
+    measure_time(
+        same_vertices("head_shapes", files_of(data + "/head_shapes", ".ply"), [](const Vec3& p) { return p.z(); }),
+        folder / "time");
+  }
   fs::remove_all(folder);
 }
