@@ -15,11 +15,11 @@ std::string number(double x) {
 }
 
 std::vector<Candidate> search(const Mesh& scan, const Region& region, const ModelDatabase& database,
-                              const SearchOptions& options, Progress& progress) {
+                              const SearchOptions& options, SearchMemory& memory, Progress& progress) {
   SearchQuery query{scan, region.box, {}};
   if (!region.flaw.empty())
     for (char flaw : region.flaw) query.face_weight.push_back(flaw ? 0.f : 1.f);
-  return find_similar(query, database, options, progress);
+  return find_similar(query, database, options, progress, &memory);
 }
 
 std::vector<Region> regions_of(const Mesh& scan, const MendOptions& options) {
@@ -92,10 +92,11 @@ std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database,
   const Mesh scan = prepare(input).mesh;
   const std::vector<Region> regions = regions_of(scan, options);
   std::vector<Found> all;
+  SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     Progress part = progress.part(int(100 * i / regions.size()), int(100 * (i + 1) / regions.size()));
     progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
-    const std::vector<Candidate> found = search(scan, regions[i], database, options.search, part);
+    const std::vector<Candidate> found = search(scan, regions[i], database, options.search, memory, part);
     for (std::size_t k = 0; k < found.size(); ++k) {
       const Candidate& c = found[k];
       progress.log("candidate_" + std::to_string(k + 1) + ": " + database.name(c.model) + " " + number(c.score));
@@ -112,6 +113,7 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
   out.mesh = first;
   out.regions = int(regions.size());
   std::string failure;
+  SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const int from = int(100 * i / regions.size()), to = int(100 * (i + 1) / regions.size());
     progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
@@ -123,7 +125,7 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
     }
     try {
       Progress searching = progress.part(from, from + (to - from) / 2);
-      const std::vector<Candidate> found = search(out.mesh, region, database, options.search, searching);
+      const std::vector<Candidate> found = search(out.mesh, region, database, options.search, memory, searching);
       std::vector<PlacedModel> models;
       for (const Candidate& c : found)
         models.push_back({placed(database.load(c.model), c.placement), database.name(c.model)});

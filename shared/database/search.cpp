@@ -56,7 +56,6 @@ struct Entry {
   int model = -1;
   const ModelRaster* raster = nullptr;
   Correlation::Model spectrum;
-  double cell = 1;            ///< of the coarsest grid
   double unit = 1;            ///< the query's frame in the model's, where world units are the same
   std::vector<int> scales;    ///< to try, as powers of kScaleStep: voxels of the coarsest grid
   std::vector<Place> places;  ///< best first
@@ -78,29 +77,37 @@ Pose inverse(const Pose& p) {
 
 class Searcher {
  public:
-  Searcher(const SearchQuery& query, const ModelDatabase& database, const SearchOptions& options, Progress& progress)
+  Searcher(const SearchQuery& query, const ModelDatabase& database, const SearchOptions& options, Progress& progress,
+           SearchMemory& memory)
       : query_(query),
+        memory_(memory),
         database_(database),
         options_(options),
         progress_(progress),
         threads_(thread_count(options.threads)),
-        levels_(std::clamp(options.levels, 1, kLevels)),
-        cache_(database, {levels_, options.cache, options.threads}) {}
+        levels_(std::clamp(options.levels, 1, kLevels)) {}
 
   std::vector<Candidate> run() {
     progress_.stage("Reading the models", 0, 40);
-    cache_.fill(progress_);
+    if (!memory_.models) {
+      auto models =
+          std::make_shared<ModelCache>(database_, ModelCache::Options{levels_, options_.cache, options_.threads});
+      models->fill(progress_);
+      memory_.models = std::move(models);  // only when it is whole
+    }
     progress_.stage("Preparing the scan", 40, 42);
     surface_ = std::make_unique<QuerySurface>(query_);
     std::vector<int> models;
     for (int m = 0; m < database_.size(); ++m)
-      if (cache_.raster(m)) models.push_back(m);
+      if (memory_.models->raster(m)) models.push_back(m);
     if (models.empty()) throw UserError("No model of the database can be used; the log says why each was skipped.");
 
-    std::vector<Candidate> found = search(kUsual, models, 42, 70);
+    std::vector<Candidate> found;
+    if (!memory_.placements.empty()) found = search(kUsual, models, true, 42, 55);
+    if (found.empty() || found[0].score > kDoubtful) merge(found, search(kUsual, models, false, 55, 75));
     if (found[0].score > kDoubtful && window_is_smaller()) {
       models.assign(promising_.begin(), promising_.begin() + std::min(promising_.size(), std::size_t(kLookedAtAgain)));
-      merge(found, search(kCloser, models, 70, 100));
+      merge(found, search(kCloser, models, false, 75, 100));
     }
     found.resize(std::min(found.size(), std::size_t(std::max(options_.candidates, 1))));
     progress_.stage("Found", 100, 100);
@@ -108,7 +115,9 @@ class Searcher {
   }
 
  private:
-  std::vector<Candidate> search(const Plan& plan, const std::vector<int>& models, int from, int to);
+  std::vector<Candidate> search(const Plan& plan, const std::vector<int>& models, bool remembered, int from, int to);
+  Eigen::Affine3d placement_of(const Pose& pose, const ModelRaster& raster) const;
+  Pose pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const;
   bool window_is_smaller() const;
   static void merge(std::vector<Candidate>& found, const std::vector<Candidate>& more);
   void choose_scales(Entry& e) const;
@@ -121,11 +130,11 @@ class Searcher {
   double score(const Pose& pose, const ModelRaster& raster, const ClosestPoint& model, bool exact, int scale) const;
 
   const SearchQuery& query_;
+  SearchMemory& memory_;
   const ModelDatabase& database_;
   const SearchOptions& options_;
   Progress& progress_;
   int threads_, levels_;
-  ModelCache cache_;
   std::unique_ptr<QuerySurface> surface_;
   const Plan* plan_ = nullptr;
   std::vector<Sample> samples_[kFit + 1];  ///< of each scale
@@ -134,25 +143,35 @@ class Searcher {
   std::vector<int> promising_;  ///< models in the order of the coarsest scale
 };
 
-std::vector<Candidate> Searcher::search(const Plan& plan, const std::vector<int>& models, int from, int to) {
+std::vector<Candidate> Searcher::search(const Plan& plan, const std::vector<int>& models, bool remembered, int from,
+                                        int to) {
   plan_ = &plan;
   for (int l = 0; l <= kFit; ++l) {
     samples_[l] = surface_->samples(plan.scales[l].reach, l == 0 ? kPoints : plan.scales[l].samples);
     area_[l] = surface_->weighted_area(plan.scales[l].reach);
   }
   entries_.clear();
+  if (&plan == &kUsual) promising_.clear();
   for (int m : models) {
     Entry e;
     e.model = m;
-    e.raster = cache_.raster(m);
-    e.spectrum = Correlation::model(*e.raster, plan.size);
-    choose_scales(e);
+    e.raster = memory_.models->raster(m);
+    const auto known = memory_.placements.find(m);
+    if (remembered && known == memory_.placements.end()) continue;
+    if (remembered) {
+      e.places.push_back({pose_of(known->second, *e.raster)});
+    } else {
+      e.spectrum = Correlation::model(*e.raster, plan.size);
+      choose_scales(e);
+    }
     entries_.push_back(std::move(e));
   }
   const auto percent = [&](int share) { return from + (to - from) * share / 100; };
-  search_everywhere(percent(0), percent(50));
+  if (!remembered) search_everywhere(percent(0), percent(50));
   progress_.stage("Comparing the best places", percent(50), percent(60));
   refine(0);
+  if (&plan == &kUsual)
+    for (const Entry& e : entries_) memory_.placements[e.model] = placement_of(e.places[0].pose, *e.raster);
   drop_worse_half();
   for (int l = 1; l < levels_; ++l) {
     progress_.stage("Comparing more finely", percent(50 + 10 * l), percent(60 + 10 * l));
@@ -161,6 +180,24 @@ std::vector<Candidate> Searcher::search(const Plan& plan, const std::vector<int>
   }
   progress_.stage("Fitting the best models", percent(80), percent(100));
   return fit();
+}
+
+Eigen::Affine3d Searcher::placement_of(const Pose& pose, const ModelRaster& raster) const {
+  const Pose back = inverse(pose);
+  Eigen::Affine3d placement = Eigen::Affine3d::Identity();
+  placement.linear() = back.scale * surface_->size() / raster.size * back.rotation;
+  placement.translation() =
+      surface_->origin() + surface_->size() * back.translation - placement.linear() * raster.origin;
+  return placement;
+}
+
+Pose Searcher::pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const {
+  const double scale = placement.linear().col(0).norm();
+  Pose p;
+  p.rotation = (placement.linear() / scale).transpose();
+  p.scale = surface_->size() / (raster.size * scale);
+  p.translation = (p.rotation * (surface_->origin() - placement.translation()) / scale - raster.origin) / raster.size;
+  return p;
 }
 
 /// Whether the closer search sees less around the region than the usual one, but all of the region.
@@ -319,7 +356,7 @@ void Searcher::refine(int level) {
   const int grid = std::min(std::max(level, 1), levels_ - 1);
   run_tasks(int(entries_.size()), threads_, progress_, [&](int i, const std::function<void()>& poll) {
     Entry& e = entries_[i];
-    if (grid > 1) cache_.complete(e.model);
+    if (grid > 1) memory_.models->complete(e.model);
     const RasterTarget target(*e.raster, grid);
     for (Place& p : e.places) {
       IcpOptions icp_options;
@@ -351,25 +388,23 @@ std::vector<Candidate> Searcher::fit() {
     icp_options.done = 1e-5;
     const std::vector<Sample>& samples = samples_[kFit];
     const Pose pose = icp(samples, tree, e.places[0].pose, icp_options, poll).pose;
-    const Pose back = inverse(pose);
     Candidate& c = found[i];
     c.model = e.model;
     c.score = score(pose, *e.raster, tree, true, kFit);
-    const double world = back.scale * surface_->size() / model.size;
-    c.placement.linear() = world * back.rotation;
-    c.placement.translation() =
-        surface_->origin() + surface_->size() * back.translation - c.placement.linear() * model.origin;
+    c.placement = placement_of(pose, *e.raster);
   });
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  for (const Candidate& c : found) memory_.placements[c.model] = c.placement;
   return found;
 }
 
 }  // namespace
 
 std::vector<Candidate> find_similar(const SearchQuery& query, const ModelDatabase& database,
-                                    const SearchOptions& options, Progress& progress) {
-  return Searcher(query, database, options, progress).run();
+                                    const SearchOptions& options, Progress& progress, SearchMemory* memory) {
+  SearchMemory own;
+  return Searcher(query, database, options, progress, memory ? *memory : own).run();
 }
 
 }  // namespace parts

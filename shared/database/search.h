@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "database/model_database.h"
@@ -18,7 +20,7 @@ struct SearchQuery {
 
 struct SearchOptions {
   int candidates = 1;        ///< how many models to return, at most
-  int levels = 3;            ///< resolutions, each twice as fine as the one before, 1 to 4
+  int levels = 3;            ///< resolutions, each twice as fine as the one before, 1 to 3
   bool allow_scale = true;   ///< models may be scaled; else only changed from one unit of length to another
   bool any_rotation = true;  ///< models may lie any way; else up to about 30 degrees from the scan's frame
   bool cache = true;         ///< keep rasterisations beside the database
@@ -34,6 +36,16 @@ struct Candidate {
   double score = 0;
 };
 
+class ModelCache;
+
+/// What a search leaves for the next one in the same scan, database and options
+/// (another hole): the models' rasterisations, and where each model fitted, which
+/// is looked at first, and elsewhere only if that does not fit well.
+struct SearchMemory {
+  std::shared_ptr<ModelCache> models;
+  std::map<int, Eigen::Affine3d> placements;  ///< model world to scan world
+};
+
 /// The models of the database with a surface most like the one around the
 /// region, and where it is; best first, each model at most once (thesis 3.3.1).
 /// Models that cannot be used are logged and left out.
@@ -41,6 +53,6 @@ struct Candidate {
 ///                    region, or no usable model
 /// @throws Cancelled
 std::vector<Candidate> find_similar(const SearchQuery& query, const ModelDatabase& database,
-                                    const SearchOptions& options, Progress& progress);
+                                    const SearchOptions& options, Progress& progress, SearchMemory* memory = nullptr);
 
 }  // namespace parts

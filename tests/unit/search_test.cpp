@@ -155,6 +155,26 @@ TEST_F(Search, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST_F(Search, RemembersWhereModelsFitted) {
+  for (unsigned seed : {2u, 3u, 4u}) add(seed);
+  const Eigen::Affine3d motion = turned_and_scaled(1.1);
+  const ModelDatabase database(folder_.string(), progress_);
+  SearchMemory memory;
+  find_similar(noseless(motion), database, {}, progress_, &memory);
+  EXPECT_EQ(memory.placements.size(), 3u);
+  fs::remove_all(folder_ / ".model-cache");
+  std::vector<std::string> stages;
+  Progress watched([&](int, const char* stage) { return stages.push_back(stage), true; });
+  const Candidate c = find_similar(noseless(motion), database, {}, watched, &memory).at(0);
+  expect_nose_to_nose(c, unsigned(c.model + 2), motion);
+  EXPECT_EQ(std::count(stages.begin(), stages.end(), "Comparing everywhere"), 0);
+  EXPECT_FALSE(fs::exists(folder_ / ".model-cache"));
+  // Wrong memories do not mislead.
+  for (auto& [model, placement] : memory.placements) placement = Eigen::Translation3d(1, 2, 3) * placement;
+  const Candidate again = find_similar(noseless(motion), database, {}, progress_, &memory).at(0);
+  expect_nose_to_nose(again, unsigned(again.model + 2), motion);
+}
+
 TEST_F(Search, SaysWhatIsWrong) {
   const auto sentence = [&](const SearchQuery& q) -> std::string {
     try {
