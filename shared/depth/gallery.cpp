@@ -65,6 +65,23 @@ View Gallery::nearest(int k, const View& view) const {
   return best;
 }
 
+namespace {
+
+// Fills pits a few pixels wide: rays that slip between lips or through a crack
+// would come out as spikes wherever the example is used.
+cv::Mat without_pits(const cv::Mat& depth, const cv::Mat& mask) {
+  double low, high;
+  cv::minMaxLoc(depth, &low, &high, nullptr, nullptr, mask);
+  const int side = std::max(3, std::max(depth.cols, depth.rows) / 60 | 1);
+  const cv::Mat full = extend(depth, mask), window = cv::Mat::ones(side, side, CV_8U);
+  cv::Mat opened, result = depth.clone();
+  cv::morphologyEx(full, opened, cv::MORPH_OPEN, window);
+  opened.copyTo(result, (full - opened > 0.04 * (high - low)) & mask);
+  return result;
+}
+
+}  // namespace
+
 Prepared Gallery::get(int k, const View& view) {
   const Example e = source_.get(objects_[k], view);
   Prepared p;
@@ -74,7 +91,7 @@ Prepared Gallery::get(int k, const View& view) {
   p.pixels_per_unit = e.pixels_per_unit();
   p.middle = cv::mean(e.depth, e.mask)[0];
   p.image.mask = e.mask;
-  p.image.planes = {intensity(e.image), (e.depth - p.middle) * p.pixels_per_unit};
+  p.image.planes = {intensity(e.image), (without_pits(e.depth, e.mask) - p.middle) * p.pixels_per_unit};
   if (!e.back_depth.empty()) p.image.planes.push_back((e.back_depth - p.middle) * p.pixels_per_unit);
   return p;
 }
