@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "geometry/parallel.h"
@@ -17,7 +18,8 @@ constexpr int most_picks = 7;
 
 }  // namespace
 
-PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayout& layout, long most, int threads) {
+PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayout& layout, long most, double share,
+                     int threads) {
   long total = 0;
   for (const LevelExample& e : examples)
     if (e.active) total += std::count(e.plane.inside.begin(), e.plane.inside.end(), 1);
@@ -33,7 +35,7 @@ PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayou
   }
   if (all.empty()) return;
 
-  find_axes(examples, layout, all, threads);
+  find_axes(examples, layout, all, share, threads);
   std::vector<float> projected(all.size() * axes_);
   parallel_for(long(all.size()), threads, [&](long begin, long end) {
     Window w;
@@ -51,7 +53,7 @@ PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayou
 
 // Principal components of a sample, as rows of root-weighted windows and the position.
 void PatchTree::find_axes(const std::vector<LevelExample>& examples, const PatchLayout& layout,
-                          const std::vector<Match>& all, int threads) {
+                          const std::vector<Match>& all, double share, int threads) {
   const int r = layout.radius(), thin = (2 * r) / most_picks + 1;
   std::vector<Lane> root;
   for (int j = -(r / thin) * thin; j <= r; j += thin)
@@ -78,7 +80,7 @@ void PatchTree::find_axes(const std::vector<LevelExample>& examples, const Patch
   rows.rowwise() -= mean;
   const Eigen::MatrixXf covariance = rows.transpose() * rows;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
-  axes_ = std::min(most_axes, dims);
+  axes_ = share > 0 ? std::clamp(int(std::lround(share * dims)), 1, dims) : std::min(most_axes, dims);
   basis_.assign(long(axes_) * (lanes + 1), Lane::Zero());
   for (int a = 0; a < axes_; ++a) {
     const Eigen::VectorXf vector = solver.eigenvectors().col(dims - 1 - a);
@@ -136,8 +138,8 @@ int PatchTree::build(std::vector<int>& order, int begin, int end, const std::vec
 }
 
 int PatchTree::leaf(const Window& window) const {
-  float row[most_axes];
-  project(window, row);
+  std::vector<float> row(axes_);
+  project(window, row.data());
   int node = 0;
   while (nodes_[node].axis >= 0)
     node = row[nodes_[node].axis] < nodes_[node].split ? nodes_[node].left : nodes_[node].right;

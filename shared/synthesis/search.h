@@ -30,7 +30,8 @@ class PatchTree {
  public:
   /// Looks at every step-th pixel of the active examples, step chosen so that
   /// there are at most `most` windows.
-  PatchTree(const std::vector<LevelExample>& examples, const PatchLayout& layout, long most, int threads);
+  /// @param share  of the principal components that are kept; 0 = the first 14
+  PatchTree(const std::vector<LevelExample>& examples, const PatchLayout& layout, long most, double share, int threads);
 
   /// The leaf that a window falls into.
   int leaf(const Window& window) const;
@@ -46,7 +47,7 @@ class PatchTree {
     int left = 0, right = 0;  ///< nodes; of a leaf: left is its number
   };
   void find_axes(const std::vector<LevelExample>& examples, const PatchLayout& layout, const std::vector<Match>& all,
-                 int threads);
+                 double share, int threads);
   int build(std::vector<int>& order, int begin, int end, const std::vector<float>& rows, std::vector<Match>& all);
   void project(const Window& window, float* to) const;
 

@@ -85,7 +85,7 @@ class Optimizer {
   void build_tree() {
     tree_.reset();
     if (!options_.exact_search)
-      tree_ = std::make_unique<PatchTree>(examples_, setup_.layout, tree_windows, options_.threads);
+      tree_ = std::make_unique<PatchTree>(examples_, setup_.layout, tree_windows, options_.pca_share, options_.threads);
   }
 
   void run_level(Progress& progress) {

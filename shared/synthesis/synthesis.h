@@ -39,6 +39,7 @@ struct SynthesisOptions {
   int max_iterations = 10;                ///< a level
   double tolerance = 0.005;   ///< stops a level when an iteration gains less than this share of the objective
   int longest_coarsest = 64;  ///< pixels: a larger coarsest level is halved, with the first patch size; 0: never
+  double pca_share = 0;       ///< of the principal components (5.2) that propose candidates; 0 = the first 14
   bool exact_search = false;  ///< compare every window with every other: slow, to judge the search by
   int threads = 0;            ///< 0 = all cores; the result does not depend on it
 };

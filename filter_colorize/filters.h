@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "host/filter.h"
+
+namespace parts {
+
+host::Filter colorize_depth_filter();
+
+}  // namespace parts
