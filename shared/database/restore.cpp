@@ -10,6 +10,7 @@
 #include "database/paste.h"
 #include "geometry/attributes.h"
 #include "geometry/prepare.h"
+#include "geometry/topology.h"
 
 namespace parts {
 namespace {
@@ -59,6 +60,11 @@ class Mender {
   Fit fit(int model, const std::vector<char>& flaw) const;
   PasteOptions paste_options() const;
   /// Pastes into a scan with a hole. @param whole  the scan's face numbers before, for the report
+  /// The published cut: compose() with these faces of the scan kept, and those
+  /// of the model that the distances of Fig. 7 give.
+  Restored thesis_cut(const Fit& fit, const std::vector<char>& keep, const std::vector<char>& keep_of_model) const;
+  std::vector<char> far_from_scan(const Mesh& model) const;
+  std::vector<char> near_centre(const Mesh& model) const;
   bool paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const;
 
   const Mesh& scan_;
@@ -165,12 +171,77 @@ bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const F
   return true;
 }
 
+/// Fig. 7b: the model's faces in the region whose distance from the scan is a
+/// large share of the largest.
+std::vector<char> Mender::far_from_scan(const Mesh& model) const {
+  const ClosestFace on_scan(scan_);
+  std::vector<double> distance(model.faces.size(), 0);
+  double most = 0;
+  for (int f = 0; f < model.face_count(); ++f) {
+    if (!region_.box.contains(model.face_box(f))) continue;
+    const FaceHit hit = on_scan(center_of(model, f));
+    if (hit.on_border) most = std::max(most, distance[f] = hit.distance);
+  }
+  std::vector<char> keep(model.faces.size());
+  for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = distance[f] > options_.constraint_distance * most;
+  return keep;
+}
+
+/// Fig. 7a: the model's faces nearest the centre, or over the selected flaw.
+std::vector<char> Mender::near_centre(const Mesh& model) const {
+  std::vector<char> keep(model.faces.size(), 0);
+  const ClosestFace on_scan(scan_);
+  const Vec3 half = region_.box.sizes() / 2;
+  std::vector<double> away(model.faces.size());
+  for (int f = 0; f < model.face_count(); ++f)
+    away[f] = (center_of(model, f) - region_.box.center()).cwiseQuotient(half).norm();
+  const double least = *std::min_element(away.begin(), away.end());
+  for (int f = 0; f < model.face_count(); ++f) {
+    if (!region_.box.contains(model.face_box(f))) continue;
+    const bool over_flaw = !region_.flaw.empty() && region_.flaw[on_scan(center_of(model, f)).face];
+    keep[f] = region_.flaw.empty() ? away[f] <= std::max(least, options_.constraint_distance) : over_flaw;
+  }
+  return keep;
+}
+
+Restored Mender::thesis_cut(const Fit& fit, const std::vector<char>& keep,
+                            const std::vector<char>& keep_of_model) const {
+  ComposeOptions o;
+  o.resolution = options_.resolution;
+  o.cut = Cut::Thesis;
+  o.smoothing = options_.smoothing;
+  o.volume = region_.box;
+  o.threads = options_.threads;
+  Progress part = progress_.part(50, 100);
+  ComposeResult composed =
+      compose({scan_, keep, "the scan"}, {fit.mesh, keep_of_model, "the model of the database"}, o, part);
+  const MeshCheck before = check(scan_), after = check(composed.composed);
+  const int wanted = before.boundary_loops - int(region_.rims.size());
+  if (after.boundary_loops > wanted || after.nonmanifold_edges > before.nonmanifold_edges ||
+      after.components > before.components)
+    throw UserError(
+        "The cut of the thesis does not close the surface here; choose the cut Refined, or another Resolution.");
+  Restored out;
+  RestoreReport& r = out.report;
+  r.model = fit.model, r.blended = fit.blended;
+  r.rms_before = fit.fitted.rms_before, r.rms_after = fit.fitted.rms_after, r.inlier_share = fit.fitted.share;
+  r.faces_added = int(std::count_if(composed.face_from_b.begin(), composed.face_from_b.end(), [](char t) { return t != 0; }));
+  r.faces_replaced = std::max(0, scan_.face_count() - (composed.composed.face_count() - r.faces_added));
+  r.rims_joined = composed.report.loops_joined, r.borders_capped = composed.report.loops_capped;
+  r.seam_length = composed.report.seam_length, r.seam_gap = composed.report.seam_gap;
+  out.mesh = std::move(composed.composed), out.face_from_model = std::move(composed.face_from_b);
+  out.candidate = fit.mesh;
+  return out;
+}
+
 Restored Mender::fill() {
   Restored out;
   for (int m = 0; m < int(models_.size()); ++m) {
     progress_.at(double(m) / double(models_.size()));
     const Fit f = fit(m, {});
     if (f.mesh.faces.empty()) continue;
+    if (options_.cut == Cut::Thesis)
+      return thesis_cut(f, flaw_constraints(scan_, region_, options_.constraint_distance).keep, far_from_scan(f.mesh));
     if (paste_into(scan_, region_.rims, f, out)) return out;
   }
   throw UserError(
@@ -187,6 +258,7 @@ Restored Mender::restore() {
     progress_.at(double(m) / double(models_.size()));
     Fit f = fit(m, constraints.flaw);
     if (f.mesh.faces.empty()) continue;
+    if (options_.cut == Cut::Thesis) return thesis_cut(f, constraints.keep, near_centre(f.mesh));
     const std::vector<char> replaced = cut_out_flaw(scan_, region_, constraints, f.mesh);
     std::vector<char> stays(replaced.size());
     for (std::size_t k = 0; k < stays.size(); ++k) stays[k] = !replaced[k];

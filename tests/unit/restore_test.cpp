@@ -225,6 +225,24 @@ TEST(Restore, FindsTheFlawInABox) {
   }
 }
 
+TEST(Restore, ByTheCutOfTheThesisOrASentence) {
+  const Scarred s;
+  RegionOptions where;
+  where.by = RegionBy::Box;
+  where.box = Box(s.at - Vec3(0.24, 0.24, 0.24), s.at + Vec3(0.24, 0.24, 0.24));
+  RestoreOptions o;
+  o.cut = Cut::Thesis;
+  Progress silent;
+  Restored r;
+  const std::string sentence = user_error(
+      [&] { r = restore_surface(s.scan, flaw_regions(s.scan, where).at(0), similar_bust(), o, silent); });
+  if (sentence.empty()) {
+    expect_closed_manifold(r.mesh, "the cut of the thesis");
+  } else {
+    EXPECT_NE(sentence.find("choose"), std::string::npos) << sentence;
+  }
+}
+
 TEST(Region, OneForEachFlaw) {
   Mesh m = sphere();
   m.face_selected = faces_where(m, [](const Vec3& c) { return std::abs(c.x()) > 0.95; });
