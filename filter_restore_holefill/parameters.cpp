@@ -34,7 +34,7 @@ std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
                         "box)."));
   list.push_back(integer("Candidates", candidates, 1, 1000, "Candidates",
                          "How many of the most similar models are taken, at most."));
-  list.push_back(integer("Levels", search.levels, 1, 4, "Levels of the search",
+  list.push_back(integer("Levels", search.levels, 1, 3, "Levels of the search",
                          "The models are compared at so many resolutions, each twice as fine as the one before; at "
                          "each the worse half is dropped."));
   return list;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/attributes.h"
 #include "geometry/prepare.h"
 
 namespace parts {
@@ -20,6 +21,37 @@ std::vector<Candidate> search(const Mesh& scan, const Region& region, const Mode
   if (!region.flaw.empty())
     for (char flaw : region.flaw) query.face_weight.push_back(flaw ? 0.f : 1.f);
   return find_similar(query, database, options, progress, &memory);
+}
+
+/// Closes holes of so few edges that no detail fits into them at the scan's own
+/// resolution: by a face, or a fan around their middle. @return how many
+int close_small(Mesh& scan, std::vector<Region>& regions) {
+  constexpr int kMostEdges = 6;
+  std::vector<int> like(scan.vertices.size(), -1);
+  for (int f = 0; f < scan.face_count(); ++f)
+    for (int v : scan.faces[f]) like[v] = f;
+  std::vector<Region> rest;
+  int closed = 0;
+  for (Region& region : regions) {
+    const std::vector<int>& rim = region.rims[0].vertices;
+    const int n = int(rim.size());
+    if (n > kMostEdges) {
+      rest.push_back(std::move(region));
+      continue;
+    }
+    ++closed;
+    if (n == 3) {
+      add_face_like(scan, like[rim[0]], {rim[2], rim[1], rim[0]});
+      continue;
+    }
+    Vec3 middle = Vec3::Zero();
+    for (int v : rim) middle += scan.vertices[v] / n;
+    const int center = add_vertex_between(scan, rim[0], rim[n / 2], 0.5);
+    scan.vertices[center] = middle;
+    for (int k = 0; k < n; ++k) add_face_like(scan, like[rim[k]], {rim[(k + 1) % n], rim[k], center});
+  }
+  regions = std::move(rest);
+  return closed;
 }
 
 std::vector<Region> regions_of(const Mesh& scan, const MendOptions& options) {
@@ -108,10 +140,14 @@ std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database,
 
 Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOptions& options, Progress& progress) {
   Mended out;
-  const Mesh first = prepare(input).mesh;
+  Mesh first = prepare(input).mesh;
   std::vector<Region> regions = regions_of(first, options);
-  out.mesh = first;
   out.regions = int(regions.size());
+  if (options.fill) {
+    out.mended = close_small(first, regions);
+    if (out.mended) progress.log("closed_small: " + std::to_string(out.mended));
+  }
+  out.mesh = first;
   std::string failure;
   SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -143,7 +179,7 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
       if (regions.size() > 1) progress.log(std::string("left_as_it_was: ") + e.what());
     }
   }
-  if (out.candidates.empty()) throw UserError(failure);
+  if (out.mended == 0) throw UserError(failure);
   return out;
 }
 

@@ -225,7 +225,8 @@ Restored Mender::thesis_cut(const Fit& fit, const std::vector<char>& keep,
   RestoreReport& r = out.report;
   r.model = fit.model, r.blended = fit.blended;
   r.rms_before = fit.fitted.rms_before, r.rms_after = fit.fitted.rms_after, r.inlier_share = fit.fitted.share;
-  r.faces_added = int(std::count_if(composed.face_from_b.begin(), composed.face_from_b.end(), [](char t) { return t != 0; }));
+  r.faces_added =
+      int(std::count_if(composed.face_from_b.begin(), composed.face_from_b.end(), [](char t) { return t != 0; }));
   r.faces_replaced = std::max(0, scan_.face_count() - (composed.composed.face_count() - r.faces_added));
   r.rims_joined = composed.report.loops_joined, r.borders_capped = composed.report.loops_capped;
   r.seam_length = composed.report.seam_length, r.seam_gap = composed.report.seam_gap;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "database/restore.h"
-
 #include <gtest/gtest.h>
+
+#include <filesystem>
 
 #include "compose_support.h"
 #include "database/closest_face.h"
+#include "database/mend.h"
 #include "geometry/attributes.h"
+#include "geometry/mesh_io.h"
 #include "geometry/prepare.h"
 #include "support/busts.h"
 
@@ -234,13 +236,36 @@ TEST(Restore, ByTheCutOfTheThesisOrASentence) {
   o.cut = Cut::Thesis;
   Progress silent;
   Restored r;
-  const std::string sentence = user_error(
-      [&] { r = restore_surface(s.scan, flaw_regions(s.scan, where).at(0), similar_bust(), o, silent); });
+  const std::string sentence =
+      user_error([&] { r = restore_surface(s.scan, flaw_regions(s.scan, where).at(0), similar_bust(), o, silent); });
   if (sentence.empty()) {
     expect_closed_manifold(r.mesh, "the cut of the thesis");
   } else {
     EXPECT_NE(sentence.find("choose"), std::string::npos) << sentence;
   }
+}
+
+TEST(Mend, ClosesHolesTooSmallForAnyDetailWithoutASearch) {
+  Mesh scan = sphere();
+  std::vector<char> stays(scan.faces.size(), 1);
+  const int v = scan.faces[100][0];  // a whole fan goes, and a face elsewhere
+  for (int f = 0; f < scan.face_count(); ++f)
+    for (int u : scan.faces[f]) stays[f] = stays[f] && u != v;
+  stays[900] = 0;
+  scan = take_faces(scan, stays);
+  ASSERT_EQ(check(scan).boundary_loops, 2);
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "mend_models";
+  std::filesystem::create_directories(folder);
+  write_mesh(sphere(), (folder / "sphere.ply").string());
+  Progress silent;
+  const ModelDatabase database(folder.string(), silent);
+  MendOptions o;
+  o.fill = true;
+  o.region.by = RegionBy::Holes;
+  const Mended m = mend_scan(scan, database, o, silent);
+  EXPECT_EQ(m.mended, 2);
+  EXPECT_TRUE(m.candidates.empty());
+  expect_closed_manifold(m.mesh, "sphere");
 }
 
 TEST(Region, OneForEachFlaw) {
