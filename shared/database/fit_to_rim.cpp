@@ -2,6 +2,7 @@
 #include "database/fit_to_rim.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 
 #include "database/matching.h"
 #include "database/smooth_field.h"
@@ -61,6 +62,8 @@ Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& 
       std::vector<Vec3> wanted(start.vertices.size());
       for (std::size_t v = 0; v < wanted.size(); ++v) wanted[v] = targets.point[v] - start.vertices[v];
       const std::vector<Vec3> u = field(wanted, targets.weight, lengths[step] * size * 0.5);
+      // A surface too degenerate to be solved on stays as it is.
+      if (!std::all_of(u.begin(), u.end(), [](const Vec3& d) { return d.allFinite(); })) break;
       double moved = 0;
       for (std::size_t v = 0; v < u.size(); ++v)
         fitted.vertices[v] = start.vertices[v] + u[v], moved += u[v].squaredNorm();
