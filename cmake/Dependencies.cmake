@@ -28,16 +28,3 @@ parts_find_library(deps::opencv opencv2/core.hpp opencv_imgcodecs opencv_imgproc
 parts_find_library(deps::flann flann/flann.hpp flann_cpp lz4)
 parts_find_library(deps::expat expat.h expat)
 parts_find_library(deps::maxflow maxflow.h maxflow INCLUDE_SUFFIXES maxflow-3.0)
-
-# MeshLab's headers (with vcglib), which no Debian binary package carries.
-if(NOT MESHLAB_HEADERS)
-  execute_process(
-    COMMAND "${CMAKE_CURRENT_LIST_DIR}/fetch-meshlab-headers.sh"
-    OUTPUT_VARIABLE MESHLAB_HEADERS OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
-  if(failed)
-    message(FATAL_ERROR "MeshLab's headers are missing, see above.")
-  endif()
-  set(MESHLAB_HEADERS "${MESHLAB_HEADERS}" CACHE PATH "Folder with MeshLab's src/common and vcglib")
-endif()
-add_library(deps::vcglib INTERFACE IMPORTED GLOBAL)
-target_include_directories(deps::vcglib SYSTEM INTERFACE "${MESHLAB_HEADERS}/vcglib")

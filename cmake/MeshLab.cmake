@@ -3,6 +3,17 @@
 # project's plugins and no system file is touched, and the function that makes
 # such a plugin.
 
+# MeshLab's headers (with vcglib), which no Debian binary package carries.
+if(NOT MESHLAB_HEADERS)
+  execute_process(
+    COMMAND "${CMAKE_CURRENT_LIST_DIR}/fetch-meshlab-headers.sh"
+    OUTPUT_VARIABLE MESHLAB_HEADERS OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "MeshLab's headers are missing, see above.")
+  endif()
+  set(MESHLAB_HEADERS "${MESHLAB_HEADERS}" CACHE PATH "Folder with MeshLab's src/common and vcglib")
+endif()
+
 find_package(Qt5 REQUIRED COMPONENTS Core Gui Widgets OpenGL Xml)
 find_package(OpenGL REQUIRED)
 find_library(MESHLAB_COMMON_LIBRARY meshlab-common PATH_SUFFIXES meshlab REQUIRED)

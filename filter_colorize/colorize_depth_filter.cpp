@@ -6,16 +6,19 @@
 #include "colorize/colorize_depth.h"
 #include "filters.h"
 #include "geometry/error.h"
+#include "host/common.h"
 #include "mappings/examples.h"
 #include "raster/depth_mesh.h"
 #include "raster/raster_io.h"
 #include "raster/texture.h"
+#include "synthesis/usage_picture.h"
 
 namespace parts {
 namespace {
 
 using namespace host;
 
+constexpr const char *slug = "colorize_depth", *patch_sizes = "9,11,7";
 constexpr int kMostPixels = 1000;  // of the longer side of examples that are rendered
 
 std::vector<Parameter> parameters(const Scene&) {
@@ -31,7 +34,7 @@ std::vector<Parameter> parameters(const Scene&) {
               "How many objects give their colours. 1 morphs one image-map onto the new shape."),
       text("Choose", "", "Choose",
            "Labels of the examples to use, separated by semicolons. Empty: those whose depth is most similar."),
-      text("PatchSizes", "9,11,7", "Patch sizes",
+      text("PatchSizes", patch_sizes, "Patch sizes",
            "Windows' sides in pixels, odd, from coarse to fine; as many as there are levels."),
       number("WeightDepth", o.weight_depth, 0, 1e6, "Weight of depth",
              "1: a difference of one standard deviation of the class counts 1."),
@@ -65,35 +68,20 @@ std::vector<std::string> labels(const std::string& text) {
   return all;
 }
 
-std::vector<int> sizes(const std::string& text) {
-  std::vector<int> all;
-  std::istringstream in(text);
-  for (std::string item; std::getline(in, item, ',');) {
-    std::size_t used = 0;
-    int side = 0;
-    try {
-      side = std::stoi(item, &used);
-    } catch (const std::exception&) {
-    }
-    if (side < 1 || item.find_first_not_of(" \t", used) != std::string::npos)
-      throw UserError("PatchSizes '" + text + "' is no list of sizes; give odd numbers of pixels, as in 9,11,7.");
-    all.push_back(side);
-  }
-  if (all.empty()) throw UserError("PatchSizes is empty; give odd numbers of pixels, coarse to fine, as in 9,11,7.");
-  return all;
-}
-
-ColorizeOptions options_of(const Inputs& inputs) {
+ColorizeOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
+  const auto weight = [&](const char* name, double fallback) {
+    return class_number(inputs, preset, slug, name, fallback);
+  };
   ColorizeOptions o;
   o.examples = inputs.integer("Examples");
   o.choose = labels(inputs.text("Choose"));
-  o.patch_sizes = sizes(inputs.text("PatchSizes"));
-  o.weight_depth = inputs.number("WeightDepth");
-  o.weight_detail = inputs.number("WeightHighFrequency");
-  o.weight_y = inputs.number("WeightY");
-  o.weight_cb = inputs.number("WeightCb");
-  o.weight_cr = inputs.number("WeightCr");
-  o.weight_position = inputs.number("WeightPosition");
+  o.patch_sizes = parse_patch_sizes(class_text(inputs, preset, slug, "PatchSizes", patch_sizes));
+  o.weight_depth = weight("WeightDepth", o.weight_depth);
+  o.weight_detail = weight("WeightHighFrequency", o.weight_detail);
+  o.weight_y = weight("WeightY", o.weight_y);
+  o.weight_cb = weight("WeightCb", o.weight_cb);
+  o.weight_cr = weight("WeightCr", o.weight_cr);
+  o.weight_position = weight("WeightPosition", o.weight_position);
   o.pca_share = inputs.number("PcaShare");
   o.max_iterations = inputs.integer("MaxIterations");
   o.seed = unsigned(inputs.integer("Seed"));
@@ -108,13 +96,6 @@ ExampleOptions rendering(cv::Size depth) {
   o.height = std::clamp(int(depth.height * scale), 8, kMostPixels);
   o.ambient = 1, o.back = false;
   return o;
-}
-
-void refuse_inputs(const std::string& file, const Inputs& inputs) {
-  std::error_code ignored;
-  for (const char* input : {"Depth", "Database"})
-    if (!file.empty() && std::filesystem::equivalent(file, inputs.text(input), ignored))
-      throw UserError("'" + file + "' is an input of this run and is not replaced; name another file.");
 }
 
 void log_result(const ColorizeResult& r, Progress& progress) {
@@ -139,13 +120,13 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const bool add_mesh = inputs.flag("AddMesh");
   if (image_file.empty() && usage_file.empty() && !add_mesh)
     throw UserError("Nothing is asked for; name an ImageFile or a UsageFile, or switch AddMesh on.");
-  refuse_inputs(image_file, inputs), refuse_inputs(usage_file, inputs);
-  const ColorizeOptions options = options_of(inputs);
+  refuse_inputs(inputs, {"ImageFile", "UsageFile"}, {depth_file, database});
 
   progress.stage("Reading", 0, 5);
   const cv::Mat depth = read_depth(depth_file);
   Progress opening = progress.part(5, 20), coloring = progress.part(20, 90), meshing = progress.part(90, 98);
-  const auto source = open_examples(database, {options.view}, rendering(depth.size()), opening);
+  const auto source = open_examples(database, {View{}}, rendering(depth.size()), opening);
+  const ColorizeOptions options = options_of(inputs, source->preset());
   const ColorizeResult result = colorize_depth(depth, *source, options, coloring);
 
   Outcome outcome;
@@ -159,7 +140,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     outcome.current = 0;
   }
   if (!image_file.empty()) write_image(with_alpha(result.color, result.mask), image_file);
-  if (!usage_file.empty()) write_image(usage_picture(result), usage_file);
+  if (!usage_file.empty()) write_image(usage_picture(result.example), usage_file);
   log_result(result, progress);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return outcome;
@@ -169,7 +150,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
 
 host::Filter colorize_depth_filter() {
   return {"Examples: Colorize Depth Map",
-          "colorize_depth",
+          slug,
           Menu::Creation,
           "Finds an <b>image-map</b> for a depth map from those of similar objects: every patch of depth and colour is "
           "to be like a patch of the examples. With one example its image-map is morphed onto the new shape."

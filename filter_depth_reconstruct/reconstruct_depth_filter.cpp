@@ -9,10 +9,12 @@
 #include "depth/segment.h"
 #include "filters.h"
 #include "geometry/error.h"
+#include "host/common.h"
 #include "mappings/examples.h"
 #include "raster/depth_mesh.h"
 #include "raster/raster_io.h"
 #include "raster/texture.h"
+#include "synthesis/usage_picture.h"
 
 namespace parts {
 namespace {
@@ -75,36 +77,14 @@ std::vector<Parameter> parameters(const Scene&) {
   };
 }
 
-std::vector<int> parse_sizes(const std::string& text) {
-  std::vector<int> sizes;
-  std::stringstream stream(text);
-  for (std::string word; std::getline(stream, word, ',');) {
-    std::stringstream number(word);
-    int size = 0;
-    std::string rest;
-    if (!(number >> size) || number >> rest)
-      throw UserError("PatchSizes is \"" + text + "\"; give odd numbers separated by commas, as in 5,7,9.");
-    sizes.push_back(size);
-  }
-  if (sizes.empty()) throw UserError("PatchSizes is empty; give odd numbers separated by commas, as in 5,7,9.");
-  return sizes;
-}
-
-/// A weight; at its default, what the class says.
-double weight(const Inputs& inputs, const char* name, double fallback, const ClassPreset& preset) {
-  const double given = inputs.number(name);
-  return std::abs(given - fallback) < 1e-6 ? preset.number(slug, name).value_or(given) : given;
-}
-
 DepthOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
   DepthOptions o;
-  const std::string sizes = inputs.text("PatchSizes");
-  o.patch_sizes = parse_sizes(sizes == "5,7,9" ? preset.text(slug, "PatchSizes").value_or(sizes) : sizes);
+  o.patch_sizes = parse_patch_sizes(class_text(inputs, preset, slug, "PatchSizes", "5,7,9"));
   o.examples = inputs.integer("Examples");
-  o.intensity = weight(inputs, "WeightIntensity", o.intensity, preset);
-  o.high_frequency = weight(inputs, "WeightHighFrequency", o.high_frequency, preset);
-  o.depth = weight(inputs, "WeightDepth", o.depth, preset);
-  o.position = weight(inputs, "WeightPosition", o.position, preset);
+  o.intensity = class_number(inputs, preset, slug, "WeightIntensity", o.intensity);
+  o.high_frequency = class_number(inputs, preset, slug, "WeightHighFrequency", o.high_frequency);
+  o.depth = class_number(inputs, preset, slug, "WeightDepth", o.depth);
+  o.position = class_number(inputs, preset, slug, "WeightPosition", o.position);
   o.update_objects = inputs.flag("UpdateObjects");
   o.update_views = inputs.flag("UpdateViews");
   o.align = inputs.flag("AlignQuery");
@@ -141,11 +121,8 @@ Input read(const Inputs& inputs) {
     in.query.mask = read_mask(mask, in.image.color.size());
   else if (in.image.has_alpha)
     in.query.mask = in.image.mask;
-  std::error_code error;
-  for (const char* output : {"DepthFile", "BackDepthFile", "UsageFile", "MaskFile"})
-    for (const std::string& input : {in.file, mask, inputs.text("Database")})
-      if (!inputs.text(output).empty() && std::filesystem::equivalent(inputs.text(output), input, error))
-        throw UserError(std::string(output) + " is one of the inputs; give another name.");
+  refuse_inputs(inputs, {"DepthFile", "BackDepthFile", "UsageFile", "MaskFile"},
+                {in.file, mask, inputs.text("Database")});
   return in;
 }
 
@@ -168,22 +145,6 @@ cv::Size frame_for(const DepthQuery& query, bool align) {
   }
   const double shrink = std::max(1., std::max(frame.width, frame.height) / largest_frame);
   return {std::max(64, int(std::lround(frame.width / shrink))), std::max(64, int(std::lround(frame.height / shrink)))};
-}
-
-/// A colour an example, as different from the ones before as can be.
-cv::Mat usage_picture(const cv::Mat& example) {
-  cv::Mat picture(example.size(), CV_8UC3, cv::Scalar::all(255));
-  for (int y = 0; y < example.rows; ++y)
-    for (int x = 0; x < example.cols; ++x) {
-      const int k = example.at<int>(y, x);
-      if (k < 0) continue;
-      const double hue = std::fmod(k * 0.61803398875, 1.0) * 6, light = 1 - 0.18 * (k / 4 % 3);
-      const auto wave = [&](double shift) {
-        return uchar(255 * light * std::clamp(std::abs(std::fmod(hue + shift, 6.0) - 3) - 1, 0.1, 1.0));
-      };
-      picture.at<cv::Vec3b>(y, x) = {wave(2), wave(4), wave(0)};
-    }
-  return picture;
 }
 
 std::string degrees(const View& v) {
@@ -230,7 +191,7 @@ void write_files(const DepthResult& r, const Inputs& inputs) {
   const std::string usage = inputs.text("UsageFile"), mask = inputs.text("MaskFile");
   if (!depth.empty()) write_depth(r.depth, depth);
   if (!back.empty()) write_depth(r.back_depth, back);
-  if (!usage.empty()) write_image(usage_picture(r.example), usage);
+  if (!usage.empty()) write_image(usage_picture(r.example, cv::Scalar::all(255)), usage);
   if (!mask.empty()) write_image(r.mask, mask);
 }
 

@@ -8,28 +8,20 @@
 #include "compose/constraint.h"
 #include "compose/deform.h"
 #include "geometry/error.h"
-#include "host/filter.h"
+#include "host/common.h"
 #include "parameters.h"
 
 namespace parts {
 
 namespace {
 
+using host::composition_reference;
 using host::Inputs;
 using host::Layer;
 using host::log_value;
 using host::Outcome;
-
-const char* reference =
-    "<br><br>See:<br><i>T. Hassner, L. Zelnik-Manor, G. Leifman, R. Basri</i><br>"
-    "<b>\"Minimal-cut model composition\"</b><br>Shape Modeling International 2005";
-
-Mesh surface_of(const Layer& layer) {
-  Mesh mesh = layer.mesh();
-  if (mesh.faces.empty())
-    throw UserError("The layer \"" + layer.name() + "\" has no faces; choose a layer that holds a surface.");
-  return mesh;
-}
+using host::smoothing_of;
+using host::surface_of;
 
 /// A value of ConstraintBy, then two points of a box.
 std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter, const Mesh& mesh, const char* model) {
@@ -51,9 +43,7 @@ ComposeOptions cut_options(const Inputs& inputs) {
     default:
       throw UserError("The cut \"Mesh\" is not available yet; choose Refined or Thesis.");
   }
-  options.smoothing.iterations = inputs.integer("SmoothIterations");
-  options.smoothing.distance = inputs.length("SmoothDistance");
-  options.smoothing.weight = inputs.number("SmoothWeight");
+  options.smoothing = smoothing_of(inputs);
   return options;
 }
 
@@ -189,7 +179,7 @@ std::vector<host::Filter> host::filters() {
                    "onto the <b>fixed</b> one by a rigid motion, with a change of size or a reflection where you "
                    "allow it: principal axes give first guesses, iterated closest points refine each, and the best "
                    "match wins.") +
-           reference,
+           composition_reference,
        align_parameters, align},
       {"Min-Cut: Compose Two Meshes", "compose", Menu::Remeshing,
        std::string("Joins two overlapping models into one, without a visible seam. Place the models so that they "
@@ -198,14 +188,14 @@ std::vector<host::Filter> host::filters() {
                    "lies on the wrong side, stitches the borders and smooths the seam. Faces away from the seam, their "
                    "colours and their textures stay as they are. The marks belong to the surface: move a layer and "
                    "run again without marking anew.") +
-           reference,
+           composition_reference,
        compose_parameters, compose_layers},
       {"Min-Cut: Deform by Rigid Parts", "deform", Menu::Deformation,
        std::string("Bends a model where it has joints: arms, necks, tails. Mark some faces that stay where they are "
                    "and some that move (the upper arm and the hand); the moving ones are turned, shifted, scaled or "
                    "mirrored about a pivot (the elbow), and a minimal cut finds where the moved model continues the "
                    "unmoved one. Several frames make an animation, one layer each.") +
-           reference,
+           composition_reference,
        deform_parameters, deform_layer},
   };
 }

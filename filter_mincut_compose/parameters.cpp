@@ -4,6 +4,7 @@
 
 #include "align/align.h"
 #include "compose/deform.h"
+#include "host/common.h"
 
 namespace parts {
 
@@ -13,8 +14,6 @@ using namespace host;
 
 const double any = 1e30;
 
-Vec3 low(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(); }
-Vec3 high(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.max(); }
 Vec3 middle(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center()); }
 
 /// A constraint: a choice of ConstraintBy and the two corners of its box.
@@ -41,19 +40,6 @@ void add_cut(std::vector<Parameter>& list) {
                         "Refined: a smooth border, kept away from places where only one model is (best for most). "
                         "Thesis: the published weights as printed, borders along the sides of voxels. Mesh: a cut on "
                         "the faces themselves, not available yet."));
-}
-
-void add_smoothing(std::vector<Parameter>& list) {
-  const SeamSmoothing smoothing;
-  list.push_back(integer("SmoothIterations", smoothing.iterations, 0, 10000, "Smoothing steps of the seam",
-                         "How often the vertices near the seam move toward the middle of their neighbours. 0 leaves "
-                         "the seam as it was stitched."));
-  list.push_back(length("SmoothDistance", smoothing.distance, "Smoothing distance",
-                        "Vertices up to this distance from the seam are smoothed, in the units of the models. 0 means "
-                        "two voxels."));
-  list.push_back(number("SmoothWeight", smoothing.weight, 0, 1, "Smoothing weight",
-                        "How far a vertex moves in each step: 0 not at all, 1 all the way to the middle of its "
-                        "neighbours."));
 }
 
 }  // namespace
@@ -98,15 +84,12 @@ std::vector<Parameter> compose_parameters(const Scene& scene) {
   list.push_back(choice("Volume", 0, {"Union of the bounding boxes", "Box"}, "Where to join",
                         "The part of space in which the cut may pass. Outside of it nothing is cut: what lies there is "
                         "kept or dropped as a whole, with the surface that it continues."));
-  list.push_back(point("VolumeMin", low(volume), "Where to join: box, low corner",
-                       "Used when the choice above is Box: the corner with the smallest x, y and z."));
-  list.push_back(point("VolumeMax", high(volume), "Where to join: box, high corner",
-                       "Used when the choice above is Box: the corner with the largest x, y and z."));
+  add_box("Volume", "Where to join", volume, list);
   add_cut(list);
   list.push_back(flag("Stitch", options.stitch, "Stitch",
                       "Joins the borders of the two clipped models. Without it the result holds both clipped models as "
                       "they are: a hat on a head."));
-  add_smoothing(list);
+  add_smoothing("two voxels", list);
   list.push_back(flag("AddClippedLayers", false, "Add the clipped models",
                       "Adds what is left of each model as the layers \"Clipped A\" and \"Clipped B\", hidden."));
   list.push_back(flag("AddTransitionSurface", options.transition_surface, "Add the transition surface",
@@ -135,7 +118,7 @@ std::vector<Parameter> deform_parameters(const Scene& scene) {
                          "1 gives the final pose. A larger number gives so many layers, from the model at rest to the "
                          "final pose."));
   add_cut(list);
-  add_smoothing(list);
+  add_smoothing("two voxels", list);
   return list;
 }
 

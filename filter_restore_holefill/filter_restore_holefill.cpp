@@ -6,28 +6,20 @@
 
 #include "database/mend.h"
 #include "geometry/error.h"
-#include "host/filter.h"
+#include "host/common.h"
 #include "parameters.h"
 
 namespace parts {
 
 namespace {
 
+using host::composition_reference;
 using host::Inputs;
 using host::Layer;
 using host::log_value;
 using host::Outcome;
-
-const char* reference =
-    "<br><br>See:<br><i>T. Hassner, L. Zelnik-Manor, G. Leifman, R. Basri</i><br>"
-    "<b>\"Minimal-cut model composition\"</b><br>Shape Modeling International 2005";
-
-Mesh surface_of(const Layer& layer) {
-  Mesh mesh = layer.mesh();
-  if (mesh.faces.empty())
-    throw UserError("The layer \"" + layer.name() + "\" has no faces; choose a layer that holds a surface.");
-  return mesh;
-}
+using host::smoothing_of;
+using host::surface_of;
 
 /// What the three filters have in common.
 MendOptions query_options(const Inputs& inputs) {
@@ -81,9 +73,7 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   o.allow_scale = inputs.flag("AllowScale");
   o.resolution = inputs.integer("Resolution");
   o.cut = inputs.choice("Cut") == 1 ? Cut::Thesis : Cut::Refined;
-  o.smoothing.iterations = inputs.integer("SmoothIterations");
-  o.smoothing.distance = inputs.length("SmoothDistance");
-  o.smoothing.weight = inputs.number("SmoothWeight");
+  o.smoothing = smoothing_of(inputs);
   o.fit_to_rim = inputs.flag("FitToRim");
   o.blend = inputs.integer("Blend");
   const bool add_candidate = inputs.flag("AddCandidate");
@@ -115,20 +105,20 @@ std::vector<host::Filter> host::filters() {
        std::string("Searches a database of complete models for the surfaces most like the one around the selection, a "
                    "hole or a box, wherever and however large they are in their models, and adds the best ones as "
                    "layers, placed on the scan.") +
-           reference,
+           composition_reference,
        find_parameters, find},
       {"Database: Restore Surface", "restore", Menu::Remeshing,
        std::string("Replaces scars, dents and broken parts by surfaces of complete models of the same kind. Select "
                    "the damaged faces, or give a box around them. The most similar surface of the database is found "
                    "by what is still good around the flaw, fitted to it, and put in its place along the cut where "
                    "both are closest. Faces outside the region stay as they are.") +
-           reference,
+           composition_reference,
        restore_parameters, restore},
       {"Database: Fill Hole", "fill_hole", Menu::Remeshing,
        std::string("Fills holes with surfaces of complete models of the same kind: a face gets a nose, not a lid. All "
                    "holes are filled, each from its own best match, or those beside the selected faces or in a box. "
                    "The scan stays as it is, to the rim.") +
-           reference,
+           composition_reference,
        fill_parameters, fill},
   };
 }

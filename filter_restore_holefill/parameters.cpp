@@ -3,6 +3,7 @@
 #include "parameters.h"
 
 #include "database/mend.h"
+#include "host/common.h"
 
 namespace parts {
 
@@ -10,8 +11,10 @@ namespace {
 
 using namespace host;
 
-Vec3 low(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(); }
-Vec3 high(const Box& box) { return box.isEmpty() ? Vec3(Vec3::Zero()) : box.max(); }
+Parameter allow_scale(bool value) {
+  return flag("AllowScale", value, "Allow a change of size",
+              "The models may grow or shrink, equally in all directions. Other units of length are found either way.");
+}
 
 /// What all three filters begin with.
 std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
@@ -24,10 +27,7 @@ std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
   list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box"}, "Where",
                         "Around the selection: the selected faces are the flaws, or lie beside the holes. Around all "
                         "holes: each open border by itself. Box: what the box below holds."));
-  list.push_back(point("RegionMin", low(scene.current), "Where: box, low corner",
-                       "Used when the choice above is Box: the corner with the smallest x, y and z."));
-  list.push_back(point("RegionMax", high(scene.current), "Where: box, high corner",
-                       "Used when the choice above is Box: the corner with the largest x, y and z."));
+  add_box("Region", "Where", scene.current, list);
   list.push_back(length("Margin", 0, "Good surface around it",
                         "How far the region reaches beyond the flaw or the hole, in the units of the scan; around a "
                         "box, how far beyond the box. 0 is a third of the flaw's or hole's half size (nothing around a "
@@ -56,7 +56,6 @@ void add_search(std::vector<Parameter>& list) {
 
 std::vector<Parameter> mend(const Scene& scene, bool fill) {
   const RestoreOptions o;
-  const SeamSmoothing smoothing;
   std::vector<Parameter> list = query(scene, fill ? RegionBy::Holes : RegionBy::Selection, 5);
   list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
                         "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
@@ -64,9 +63,7 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
                         "results hardly depend on it."));
   list.push_back(flag("Refine", o.refine, "Refine the placement",
                       "Places the models once more by iterated closest points on the surface around the region."));
-  list.push_back(flag("AllowScale", o.allow_scale, "Allow a change of size",
-                      "The models may grow or shrink, equally in all directions. Other units of length are found "
-                      "either way."));
+  list.push_back(allow_scale(o.allow_scale));
   list.push_back(integer("Resolution", o.resolution, 0, 100000, "Resolution (voxels)",
                          "Of the cut Thesis: voxels along the longest side of the region. 0 chooses from the meshes "
                          "and the free memory."));
@@ -74,15 +71,7 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
                         "Refined and Mesh: the minimal cut on the faces of the scan; around a hole the whole scan is "
                         "kept. Thesis: the published cut through voxels, with the constraints that the distance "
                         "above gives."));
-  list.push_back(integer("SmoothIterations", smoothing.iterations, 0, 10000, "Smoothing steps of the seam",
-                         "How often the model's vertices near the seam move toward the middle of their neighbours. 0 "
-                         "leaves the seam as it was stitched."));
-  list.push_back(length("SmoothDistance", smoothing.distance, "Smoothing distance",
-                        "Vertices up to this distance from the seam are smoothed, in the units of the scan. 0 means "
-                        "two edges of the rim (two voxels with the cut Thesis)."));
-  list.push_back(number("SmoothWeight", smoothing.weight, 0, 1, "Smoothing weight",
-                        "How far a vertex moves in each step: 0 not at all, 1 all the way to the middle of its "
-                        "neighbours."));
+  add_smoothing("two edges of the rim (two voxels with the cut Thesis)", list);
   list.push_back(flag("AddCandidate", false, "Add the model that was used",
                       "Adds the model that each region was mended with, as it was placed and fitted, hidden."));
   list.push_back(flag("FitToRim", o.fit_to_rim, "Fit the model to the scan",
@@ -99,9 +88,7 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
 std::vector<Parameter> find_parameters(const Scene& scene) {
   const SearchOptions search;
   std::vector<Parameter> list = query(scene, RegionBy::Selection, 3);
-  list.push_back(flag("AllowScale", search.allow_scale, "Allow a change of size",
-                      "The models may grow or shrink, equally in all directions. Other units of length are found "
-                      "either way."));
+  list.push_back(allow_scale(search.allow_scale));
   add_search(list);
   return list;
 }

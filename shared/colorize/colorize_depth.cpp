@@ -8,6 +8,7 @@
 #include <random>
 
 #include "geometry/error.h"
+#include "raster/mask.h"
 #include "raster/raster_io.h"
 #include "synthesis/pyramid.h"
 #include "synthesis/synthesis.h"
@@ -16,11 +17,6 @@ namespace parts {
 namespace {
 
 enum Plane { kDepth, kY, kCb, kCr };
-
-cv::Point2d centroid(const cv::Mat& mask) {
-  const cv::Moments m = cv::moments(mask, true);
-  return {m.m10 / m.m00, m.m01 / m.m00};
-}
 
 double reach(const cv::Mat& mask) { return std::sqrt(double(cv::countNonZero(mask))); }
 
@@ -181,7 +177,7 @@ void select(std::vector<Candidate>& all, const PatchImage& query, const Colorize
   all.resize(std::min(all.size(), std::size_t(options.examples)));
 }
 
-SynthesisOptions synthesis_options(const ColorizeOptions& options) {
+SynthesisOptions engine_options(const ColorizeOptions& options) {
   SynthesisOptions s;
   s.channels = {{kDepth, options.weight_depth, false, true},
                 {kDepth, options.weight_detail, true, false},
@@ -273,7 +269,7 @@ ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const
     images.push_back(std::move(c.image));
   }
   Progress rest = progress.part(20, 100);
-  const SynthesisResult found = synthesize(query, images, synthesis_options(options), {}, rest);
+  const SynthesisResult found = synthesize(query, images, engine_options(options), {}, rest);
 
   result.objective = found.objective;
   result.example = found.example, result.source = found.source;
@@ -302,14 +298,6 @@ ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const
   for (std::size_t k = 0; k < result.used.size(); ++k)
     result.shares.push_back(cv::countNonZero(result.example == int(k)) / double(cv::countNonZero(result.mask)));
   return result;
-}
-
-cv::Mat usage_picture(const ColorizeResult& result) {
-  cv::Mat hue(result.example.size(), CV_8UC3, cv::Scalar(0, 0, 0)), picture;
-  const int count = int(result.used.size());
-  for (int k = 0; k < count; ++k) hue.setTo(cv::Scalar(180. * k / count, 200, 230), result.example == k);
-  cv::cvtColor(hue, picture, cv::COLOR_HSV2BGR);
-  return picture;
 }
 
 }  // namespace parts

@@ -47,7 +47,4 @@ struct ColorizeResult {
 ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const ColorizeOptions& options,
                               Progress& progress);
 
-/// A picture of where pixels came from: a colour an example (thesis Fig. 27c).
-cv::Mat usage_picture(const ColorizeResult& result);
-
 }  // namespace parts

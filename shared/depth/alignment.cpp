@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "raster/mask.h"
 #include "synthesis/pyramid.h"
 
 namespace parts {
@@ -19,12 +20,6 @@ cv::Matx23d Placement::inverse() const {
   Placement back;
   back.scale = 1 / scale, back.rotation = -rotation, back.from = to, back.to = from;
   return back.matrix();
-}
-
-cv::Point2d centroid(const cv::Mat& mask) {
-  const cv::Moments m = cv::moments(mask, true);
-  if (m.m00 <= 0) return {mask.cols / 2., mask.rows / 2.};
-  return {m.m10 / m.m00, m.m01 / m.m00};
 }
 
 namespace {

@@ -25,9 +25,6 @@ PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size f
 /// mean squared difference of intensities, contrast evened out, and of the masks.
 double image_difference(const PatchImage& a, const PatchImage& b);
 
-/// The middle of the foreground, pixels.
-cv::Point2d centroid(const cv::Mat& mask);
-
 /// Scale and rotation in the image plane by which the query fits an example
 /// best (thesis 4.3.3). Keeps the query as it is where another placement fits no
 /// better by a clear margin.

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "depth/alignment.h"
+#include "raster/mask.h"
 
 namespace parts {
 namespace {

@@ -13,29 +13,14 @@
 #include "bench/measure.h"
 #include "bench/scenes.h"
 #include "geometry/mesh_io.h"
+#include "support/shapes.h"
 
 using namespace parts;
 using namespace parts::bench;
 
 namespace {
 
-class Random {
- public:
-  double uniform(double low, double high) { return low + (high - low) * double(engine_() >> 11) * 0x1p-53; }
-  int below(int n) { return int(engine_() % unsigned(n)); }
-  Eigen::Vector4d in_ball() {
-    Eigen::Vector4d v;
-    do
-      for (int d = 0; d < 4; ++d) v[d] = uniform(-1, 1);
-    while (v.norm() > 1 || v.norm() < 0.1);
-    return v;
-  }
-  Vec3 direction() { return in_ball().head<3>().normalized(); }
-  Eigen::Matrix3d rotation() { return Eigen::Quaterniond(in_ball().normalized()).toRotationMatrix(); }
-
- private:
-  std::mt19937_64 engine_{1};
-};
+using test::Random;
 
 struct Kind {
   std::string name;
@@ -67,24 +52,7 @@ const Task kTasks[] = {
 /// Faces on one side of a random plane that leaves that share of the area.
 std::vector<char> piece(const Mesh& mesh, double share, Random& random) {
   if (share == 1) return {};
-  const Vec3 up = random.direction();
-  std::vector<std::pair<double, double>> faces;
-  double area = 0;
-  const auto height = [&](int f) { return up.dot(mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)); };
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const double a = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).norm();
-    faces.emplace_back(height(f), a);
-    area += a;
-  }
-  std::sort(faces.rbegin(), faces.rend());
-  double above = 0, limit = 0;
-  for (const auto& [h, a] : faces) {
-    limit = h;
-    if ((above += a) >= share * area) break;
-  }
-  std::vector<char> flags;
-  for (int f = 0; f < mesh.face_count(); ++f) flags.push_back(height(f) >= limit);
-  return flags;
+  return test::share_along(mesh, random.direction(), share);
 }
 
 struct Tried {
@@ -145,7 +113,7 @@ Tried try_once(const Kind& kind, const Task& task, Random& random) {
 std::vector<Kind> kinds() {
   Kind balls{"Bumpy balls", {}, false}, creatures{"Creatures", {}, false};
   for (int seed = 0; seed < 6; ++seed) {
-    Random random;
+    Random random(1);
     for (int k = 0; k < 40 * seed; ++k) random.below(2);
     std::vector<std::pair<Vec3, double>> bumps;
     for (int k = 0; k < 7; ++k) bumps.emplace_back(random.direction(), random.uniform(-0.3, 0.5));
@@ -185,7 +153,7 @@ int main(int argc, char** argv) {
     for (const Task& task : kTasks) {
       // Bodies have other poses, and the generated shapes other forms: no rigid motion is right.
       if (task.other && !kind.same_vertices) continue;
-      Random random;
+      Random random(1);
       int found = 0;
       Times sum;
       double gap = 0;

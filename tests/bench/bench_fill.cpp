@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   std::sort(heads.begin(), heads.end());
-  const fs::path work = fs::current_path() / "bench_fill";
+  const fs::path work = fs::current_path() / "fill_models";
   fs::create_directories(work);
   bench::Table table("RMS distance to what was there, " + std::to_string(blend) + " blended",
                      {"case", "heads", "fair fill or damage", "as in the thesis", "fitted", "median ratio", "largest",

@@ -54,6 +54,9 @@ Mesh together(const std::vector<Mesh>& meshes);
 /// Flags the faces whose centre passes.
 std::vector<char> faces_where(const Mesh& mesh, const std::function<bool(const Vec3& center)>& pass);
 
+/// The share (by area) of the faces that lies farthest along a direction.
+std::vector<char> share_along(const Mesh& mesh, const Vec3& direction, double share);
+
 /// Numbers that are the same on every machine.
 class Random {
  public:

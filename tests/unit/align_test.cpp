@@ -59,27 +59,6 @@ Mesh blob(int subdivisions) {
   return m;
 }
 
-/// The share (by area) of the faces that lies farthest along a direction.
-std::vector<char> share_along(const Mesh& mesh, const Vec3& direction, double share) {
-  std::vector<std::pair<double, double>> faces;  // height, area
-  double area = 0;
-  const auto height = [&](int f) { return direction.dot(mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)); };
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const double a = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).norm();
-    faces.emplace_back(height(f), a);
-    area += a;
-  }
-  std::sort(faces.rbegin(), faces.rend());
-  double above = 0, limit = 0;
-  for (const auto& [h, a] : faces) {
-    limit = h;
-    if ((above += a) >= share * area) break;
-  }
-  std::vector<char> flags;
-  for (int f = 0; f < mesh.face_count(); ++f) flags.push_back(height(f) >= limit);
-  return flags;
-}
-
 struct Shape {
   const char* name;
   Mesh mesh;

@@ -7,6 +7,7 @@
 
 #include "colorize/colorize_depth.h"
 #include "geometry/error.h"
+#include "synthesis/usage_picture.h"
 
 namespace parts::test {
 namespace {
@@ -157,7 +158,7 @@ TEST(UsagePicture, AColorAnExample) {
   Discs source = some_discs();
   Progress silent;
   const ColorizeResult r = colorize_depth(disc("q", {0, 0}).depth, source, quick(), silent);
-  const cv::Mat picture = usage_picture(r);
+  const cv::Mat picture = usage_picture(r.example);
   EXPECT_EQ(picture.size(), r.mask.size());
   cv::Mat grey;
   cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);

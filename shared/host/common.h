@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "compose/compose.h"
+#include "host/filter.h"
+#include "mappings/class_preset.h"
+
+/// What filters of several plugins have in common: parameters, how their values
+/// are read, and checks of inputs.
+namespace parts::host {
+
+/// Ends the help of filters after chapter 3 of the thesis.
+extern const char* const composition_reference;
+
+/// A layer's mesh. @throws UserError  it has no faces
+Mesh surface_of(const Layer& layer);
+
+/// `name`Min and `name`Max: the corners of a box that a choice above asks for.
+void add_box(const std::string& name, const std::string& label, const Box& box, std::vector<Parameter>& list);
+
+/// SmoothIterations, SmoothDistance and SmoothWeight. @param zero  what a distance of 0 means
+void add_smoothing(const std::string& zero, std::vector<Parameter>& list);
+SeamSmoothing smoothing_of(const Inputs& inputs);
+
+/// Sides of patches, coarse to fine. @throws UserError  text is no list of whole numbers
+std::vector<int> parse_patch_sizes(const std::string& text);
+
+/// The value of a parameter; at its default, what the class says of it.
+double class_number(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+                    double fallback);
+std::string class_text(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+                       const std::string& fallback);
+
+/// @throws UserError  a file that an output parameter names is one of the inputs
+void refuse_inputs(const Inputs& inputs, const std::vector<const char*>& outputs,
+                   const std::vector<std::string>& input_files);
+
+}  // namespace parts::host
