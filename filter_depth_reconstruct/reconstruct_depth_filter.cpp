@@ -22,6 +22,7 @@ namespace {
 using namespace host;
 
 constexpr const char* slug = "reconstruct_depth";
+const std::vector<const char*> outputs{"DepthFile", "BackDepthFile", "UsageFile", "MaskFile", "TextureFile"};
 constexpr int largest_frame = 800;  ///< pixels that examples are rendered in
 
 std::vector<Parameter> parameters(const Scene&) {
@@ -121,8 +122,11 @@ Input read(const Inputs& inputs) {
     in.query.mask = read_mask(mask, in.image.color.size());
   else if (in.image.has_alpha)
     in.query.mask = in.image.mask;
-  refuse_inputs(inputs, {"DepthFile", "BackDepthFile", "UsageFile", "MaskFile"},
-                {in.file, mask, inputs.text("Database")});
+  refuse_inputs(inputs, outputs, {in.file, mask, inputs.text("Database")});
+  for (const char* name : outputs) {
+    const bool depth = name == std::string("DepthFile") || name == std::string("BackDepthFile");
+    (depth ? OutputFiles::check_depth : OutputFiles::check_image)(inputs.text(name));
+  }
   return in;
 }
 
@@ -152,6 +156,15 @@ std::string degrees(const View& v) {
   out.precision(3);
   out << v.yaw << "," << v.pitch;
   return out.str();
+}
+
+/// What counted, of the user's values and the class's.
+void log_options(const DepthOptions& o, Progress& progress) {
+  std::ostringstream sizes, weights;
+  for (size_t l = 0; l < o.patch_sizes.size(); ++l) sizes << (l ? "," : "") << o.patch_sizes[l];
+  weights << o.intensity << " " << o.high_frequency << " " << o.depth << " " << o.position;
+  log_value(progress, "patch_sizes", sizes.str());
+  log_value(progress, "weights", weights.str());
 }
 
 void log_result(const DepthResult& r, Progress& progress) {
@@ -186,13 +199,21 @@ void log_result(const DepthResult& r, Progress& progress) {
                   " times as far from them as theirs from each other; the result is not to be trusted.");
 }
 
-void write_files(const DepthResult& r, const Inputs& inputs) {
-  const std::string depth = inputs.text("DepthFile"), back = inputs.text("BackDepthFile");
-  const std::string usage = inputs.text("UsageFile"), mask = inputs.text("MaskFile");
-  if (!depth.empty()) write_depth(r.depth, depth);
-  if (!back.empty()) write_depth(r.back_depth, back);
-  if (!usage.empty()) write_image(usage_picture(r.example, cv::Scalar::all(255)), usage);
-  if (!mask.empty()) write_image(r.mask, mask);
+/// @return the texture's file
+std::string write_files(const DepthResult& r, const Input& in, const Inputs& inputs) {
+  OutputFiles files;
+  files.depth(r.depth, inputs.text("DepthFile"));
+  files.depth(r.back_depth, inputs.text("BackDepthFile"));
+  files.image(usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
+  files.image(r.mask, inputs.text("MaskFile"));
+  std::string texture = inputs.text("TextureFile");
+  if (texture.empty() && shows_as_texture(in.file, in.image))
+    texture = std::filesystem::absolute(in.file).lexically_normal().string();
+  else
+    texture = write_texture(in.image.color, r.mask,
+                            {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
+  files.commit();
+  return texture;
 }
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
@@ -206,6 +227,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   rendering.back = inputs.flag("BackSide");
   Progress opening = progress.part(0, 15);
   const auto source = open_examples(database, parse_views(inputs.text("Views")), rendering, opening);
+  refuse_inputs(inputs, outputs, source->files());
   const DepthOptions options = options_of(inputs, source->preset());
 
   Progress core = progress.part(15, 90);
@@ -214,17 +236,12 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   Progress meshing = progress.part(90, 98);
   DepthMesh result = depth_to_mesh(r.depth, r.back_depth, r.camera, {}, meshing);
 
-  const std::string texture = inputs.text("TextureFile");
-  if (texture.empty() && shows_as_texture(in.file, in.image))
-    result.mesh.textures = {std::filesystem::absolute(in.file).lexically_normal().string()};
-  else
-    result.mesh.textures = {
-        write_texture(in.image.color, r.mask, {texture, in.file, {in.file, inputs.text("Mask"), database}})};
-  write_files(r, inputs);
+  result.mesh.textures = {write_files(r, in, inputs)};
 
   log_value(progress, "objects", source->size());
   log_value(progress, "frame_width", source->image_size().width);
   log_value(progress, "frame_height", source->image_size().height);
+  log_options(options, progress);
   log_result(r, progress);
   log_value(progress, "texture", result.mesh.textures[0]);
   log_value(progress, "vertices", result.mesh.vertex_count());

@@ -36,6 +36,10 @@ void check(const DepthQuery& query, const DepthOptions& options) {
     throw UserError("Nothing says what the foreground is; give a mask or an image with alpha, or let it be segmented.");
   if (!query.mask.empty() && cv::countNonZero(query.mask) < 64)
     throw UserError("The foreground has fewer than 64 pixels; give a mask that shows the object, or a larger image.");
+  cv::Mat solid;
+  if (!query.mask.empty()) cv::erode(query.mask, solid, cv::Mat());
+  if (!query.mask.empty() && cv::countNonZero(solid) == 0)
+    throw UserError("The foreground is nowhere three pixels wide; give a mask that shows the whole object.");
   for (double w : {options.intensity, options.high_frequency, options.depth, options.position, options.silhouette})
     if (!(w >= 0) || !std::isfinite(w)) throw UserError("A weight is negative or not a number; give 0 or more.");
   if (options.intensity + options.high_frequency + options.silhouette <= 0)

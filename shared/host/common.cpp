@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "geometry/error.h"
@@ -80,6 +81,14 @@ void refuse_inputs(const Inputs& inputs, const std::vector<const char*>& outputs
       if (const std::string named = inputs.text(output);
           !named.empty() && !file.empty() && std::filesystem::equivalent(named, file, missing))
         throw UserError(std::string(output) + " is one of the inputs, which are not replaced; give another name.");
+  std::map<std::filesystem::path, const char*> names;
+  for (const char* output : outputs) {
+    const std::string named = inputs.text(output);
+    if (named.empty()) continue;
+    const auto [other, is_new] = names.emplace(std::filesystem::weakly_canonical(named, missing), output);
+    if (!is_new)
+      throw UserError(std::string(other->second) + " and " + output + " are one file; give each a name of its own.");
+  }
 }
 
 }  // namespace parts::host

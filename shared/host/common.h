@@ -31,7 +31,8 @@ double class_number(const Inputs& inputs, const ClassPreset& preset, const char*
 std::string class_text(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
                        const std::string& fallback);
 
-/// @throws UserError  a file that an output parameter names is one of the inputs
+/// @throws UserError  a file that an output parameter names is one of the
+///                    inputs, or that of another output
 void refuse_inputs(const Inputs& inputs, const std::vector<const char*>& outputs,
                    const std::vector<std::string>& input_files);
 

@@ -72,6 +72,7 @@ std::string ClassModels::measure(const std::vector<View>& views, Progress& progr
           Mesh mesh = database_.load(first + int(r));
           const Box box = mesh.bounds();
           Entry& e = reads[r].entry;
+          e.textures = mesh.textures;
           e.center = box.center();
           e.diagonal = box.diagonal().norm();
           e.extent.setZero();
@@ -135,6 +136,15 @@ void ClassModels::forget_beyond_bound(int but) {
     e.loaded.reset();
     recent_.pop_back();
   }
+}
+
+std::vector<std::string> ClassModels::files() const {
+  std::vector<std::string> list;
+  for (const Entry& e : entries_) {
+    list.push_back(database_.file(e.model));
+    list.insert(list.end(), e.textures.begin(), e.textures.end());
+  }
+  return list;
 }
 
 const ClassModel& ClassModels::get(int i) {

@@ -22,6 +22,7 @@ class ClassModels {
   int size() const { return int(entries_.size()); }
   const std::string& name(int i) const { return entries_[i].name; }
   double frame() const { return frame_; }  ///< see render_example
+  std::vector<std::string> files() const;  ///< models and textures
   /// Valid until the next call.
   const ClassModel& get(int i);
 
@@ -29,6 +30,7 @@ class ClassModels {
   struct Entry {
     int model;  ///< of the database
     std::string name;
+    std::vector<std::string> textures;
     Vec3 center;
     double diagonal, size;
     Eigen::Vector2d extent;  ///< largest in all views

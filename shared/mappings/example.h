@@ -40,6 +40,8 @@ class ExampleSource {
   /// several threads at once.
   /// @throws UserError  its files or model cannot be read
   virtual Example get(int object, const View& view) = 0;
+  /// The files that it is made of, which no output may replace.
+  virtual std::vector<std::string> files() const { return {}; }
   /// What the database says about its class.
   virtual const ClassPreset& preset() const = 0;
 };

@@ -26,6 +26,7 @@ class RenderedExamples : public ExampleSource {
   Example get(int object, const View& view) override {
     return render_example(models_.get(object), view, models_.frame(), options_);
   }
+  std::vector<std::string> files() const override { return models_.files(); }
   const ClassPreset& preset() const override { return preset_; }
 
  private:

@@ -76,6 +76,13 @@ class StoredExamples : public ExampleSource {
     for (const Shot& shot : shots_[object]) views.push_back(shot.view);
     return views;
   }
+  std::vector<std::string> files() const override {
+    std::vector<std::string> list;
+    for (const auto& shots : shots_)
+      for (const Shot& shot : shots)
+        for (const MlpPlane& plane : shot.raster.planes) list.push_back(plane.file);
+    return list;
+  }
   const ClassPreset& preset() const override { return preset_; }
 
   Example get(int object, const View& view) override {

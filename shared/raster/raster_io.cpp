@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <new>
 #include <opencv2/imgcodecs.hpp>
@@ -89,26 +90,60 @@ cv::Mat to_bytes(const cv::Mat& image, const std::string& path) {
   return bytes;
 }
 
-/// Runs `write` on a draft beside the file and puts it in place.
-template <class Write>
-void replace_file(const std::string& path, const Write& write) {
-  const UserError failed(named(path) + "cannot be written; check its folder and the space left.");
-  const fs::path target(path);
+UserError unwritable(const std::string& path) {
+  return UserError(named(path) + "cannot be written; check its folder and the space left.");
+}
+
+/// OpenCV goes by the ending.
+fs::path draft_of(const fs::path& target) {
   fs::path draft = target;
-  draft.replace_filename(target.stem().string() + ".part" + target.extension().string());  // OpenCV goes by the ending
+  return draft.replace_filename(target.stem().string() + ".part" + target.extension().string());
+}
+
+void write_draft(const cv::Mat& image, const std::string& path) {
   std::error_code error;
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) throw failed;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw unwritable(path);
   bool written = false;
   try {
-    written = write(draft.string());
+    written = cv::imwrite(draft_of(path).string(), image);
   } catch (const cv::Exception& e) {
     if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
   }
-  if (written) fs::rename(draft, target, error);
-  if (!written || error) {
-    fs::remove(draft, error);
-    throw failed;
-  }
+  if (written) return;
+  fs::remove(draft_of(path), error);
+  throw unwritable(path);
+}
+
+void place_draft(const std::string& path) {
+  std::error_code error, ignored;
+  fs::rename(draft_of(path), path, error);
+  if (!error) return;
+  fs::remove(draft_of(path), ignored);
+  throw unwritable(path);
+}
+
+template <size_t n>
+bool ends_in(const std::string& path, const char* const (&endings)[n]) {
+  return std::find(std::begin(endings), std::end(endings), extension(path)) != std::end(endings);
+}
+
+void check_depth_ending(const std::string& path) {
+  if (!ends_in(path, {".tif", ".tiff", ".pfm"}))
+    throw UserError(named(path) + "has no ending that depth can be written with; use .tif or .pfm.");
+}
+
+void check_image_ending(const std::string& path) {
+  if (!ends_in(path, {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp"}))
+    throw UserError(named(path) + "has no ending that an image can be written with; use .png, .jpg, .tif or .bmp.");
+}
+
+void check_folder(const std::string& path) {
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw unwritable(path);
+  const fs::path draft = draft_of(path);
+  const bool there = bool(std::ofstream(draft));
+  fs::remove(draft, error);
+  if (!there) throw unwritable(path);
 }
 
 }  // namespace
@@ -191,18 +226,51 @@ cv::Mat read_depth(const std::string& path, double scale) {
 }
 
 void write_depth(const cv::Mat& depth, const std::string& path) {
-  const std::string e = extension(path);
-  if (e != ".tif" && e != ".tiff" && e != ".pfm")
-    throw UserError(named(path) + "has no ending that depth can be written with; use .tif or .pfm.");
-  replace_file(path, [&](const std::string& draft) { return cv::imwrite(draft, depth); });
+  check_depth_ending(path);
+  write_draft(depth, path);
+  place_draft(path);
 }
 
 void write_image(const cv::Mat& image, const std::string& path) {
-  const std::string e = extension(path);
-  const char* endings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp"};
-  if (std::find(std::begin(endings), std::end(endings), e) == std::end(endings))
-    throw UserError(named(path) + "has no ending that an image can be written with; use .png, .jpg, .tif or .bmp.");
-  replace_file(path, [&](const std::string& draft) { return cv::imwrite(draft, image); });
+  check_image_ending(path);
+  write_draft(image, path);
+  place_draft(path);
+}
+
+void OutputFiles::check_depth(const std::string& path) {
+  if (path.empty()) return;
+  check_depth_ending(path);
+  check_folder(path);
+}
+
+void OutputFiles::check_image(const std::string& path) {
+  if (path.empty()) return;
+  check_image_ending(path);
+  check_folder(path);
+}
+
+OutputFiles::~OutputFiles() {
+  std::error_code ignored;
+  for (const std::string& path : paths_) fs::remove(draft_of(path), ignored);
+}
+
+void OutputFiles::depth(const cv::Mat& depth, const std::string& path) {
+  if (path.empty()) return;
+  check_depth_ending(path);
+  write_draft(depth, path);
+  paths_.push_back(path);
+}
+
+void OutputFiles::image(const cv::Mat& image, const std::string& path) {
+  if (path.empty()) return;
+  check_image_ending(path);
+  write_draft(image, path);
+  paths_.push_back(path);
+}
+
+void OutputFiles::commit() {
+  for (const std::string& path : paths_) place_draft(path);
+  paths_.clear();
 }
 
 cv::Mat with_alpha(const cv::Mat& color, const cv::Mat& mask) {

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 namespace parts {
 
@@ -42,6 +43,30 @@ void write_depth(const cv::Mat& depth, const std::string& path);
 /// Writes an image (8U or 16U, 1, 3 or 4 channels, BGR) in the format of the
 /// ending (.png, .jpg, .tif, .bmp), as write_depth does.
 void write_image(const cv::Mat& image, const std::string& path);
+
+/// Several such files: all are written, or none.
+class OutputFiles {
+ public:
+  /// Says early that a file cannot be written; an empty name is none.
+  /// @throws UserError  the ending, the folder
+  static void check_depth(const std::string& path);
+  static void check_image(const std::string& path);
+
+  OutputFiles() = default;
+  OutputFiles(const OutputFiles&) = delete;
+  OutputFiles& operator=(const OutputFiles&) = delete;
+  ~OutputFiles();  ///< what was not put in place is gone
+
+  /// Drafts beside the files; an empty name is none.
+  /// @throws UserError  it cannot be written
+  void depth(const cv::Mat& depth, const std::string& path);
+  void image(const cv::Mat& image, const std::string& path);
+  /// Puts all in place.
+  void commit();
+
+ private:
+  std::vector<std::string> paths_;
+};
 
 /// BGRA: the colour, with the mask as alpha.
 cv::Mat with_alpha(const cv::Mat& color, const cv::Mat& mask);

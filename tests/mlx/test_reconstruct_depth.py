@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reconstruct Depth from Image through meshlabserver: stored and rendered examples, an image file, a raster layer."""
+import shutil
+
 import numpy as np
 from PIL import Image
 
@@ -102,6 +104,26 @@ class ReconstructDepth(lib.MeshCase):
         self.assertTrue((back >= rasters.read(self.out / "d.tif"))[seen].all())
         truth = rasters.read(next(self.folder.glob("query_mappings/*_back.tif")))
         self.assertLess(error(back, truth), 0.2)
+
+    def test_the_preset_of_the_class(self):
+        preset = '{ "reconstruct_depth": { "PatchSizes": "7,7", "WeightPosition": 2.5, "WeightDepth": 3 } }'
+        folder = self.folder / "preset"
+        shutil.copytree(self.models, folder)
+        (folder / "class.json").write_text(preset)
+        stored = self.folder / "preset.mlp"
+        built = run([], [template("build_mappings", Models=folder, Output=stored, Width=75, Height=100)], {})
+        self.assertSucceeded(built)
+        for database in (folder, stored):  # the database that is built passes it on
+            figures = self.result(Database=database, UpdateViews=False).figures()
+            self.assertEqual((figures["patch_sizes"], figures["levels"]), ("7,7", "2"))
+            self.assertEqual(figures["weights"], "1 0.5 3 2.5")
+            preset_depth = (self.out / "d.tif").read_bytes()
+        given = dict(PatchSizes="7,7", WeightPosition=2.5, WeightDepth=3, UpdateViews=False)
+        self.assertEqual(self.result(**given).figures()["weights"], "1 0.5 3 2.5")
+        self.assertEqual((self.out / "d.tif").read_bytes(), preset_depth)
+        figures = self.result(Database=folder, PatchSizes="5,5", WeightDepth=0.5, UpdateViews=False).figures()
+        self.assertEqual((figures["patch_sizes"], figures["weights"]), ("5,5", "1 0.5 0.5 2.5"))
+        self.assertNotEqual((self.out / "d.tif").read_bytes(), preset_depth)
 
     def test_the_current_raster_layer(self):
         out = lib.work_folder()

@@ -8,8 +8,8 @@ robustness.md in the current folder. Outcomes:
   sentence  no result; one sentence says what is wrong and what to do
   host      MeshLab itself refuses or aborts before the filter runs
 and those that fail the test: crash, hang (over a minute), silent (no result
-and no sentence), changed (an input layer is not as it was), bad (a result that
-fails its checks).
+and no sentence), changed (an input layer is not as it was, or a file was
+written without a result), bad (a result that fails its checks).
 """
 import collections
 import concurrent.futures
@@ -21,6 +21,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "mlx"))
+import depth_cases  # noqa: E402
 import lib  # noqa: E402
 import nasty  # noqa: E402
 import mend_cases  # noqa: E402
@@ -223,6 +224,7 @@ def all_cases():
     for part in (documents, damaged, sizes, placements, constraints, volumes, numbers):
         yield from part()
     yield from raster_cases.all_cases(Case)
+    yield from depth_cases.all_cases(Case)
     yield from mend_cases.all_cases(Case)
 
 
@@ -255,6 +257,8 @@ def checked(case, result):
     if case.result == "placed":
         matrix = np.array(result.figures()["matrix"].split(), float)
         return ("ok", f"rms {result.figures()['rms_after']}") if np.isfinite(matrix).all() else ("bad", "not finite")
+    if case.result == "untrusted" and result.figures()["trusted"] != "no":
+        return "bad", "trusted"
     used = mesh.v[np.unique(mesh.f)]
     if len(mesh.f) == 0 or not np.isfinite(used).all():
         return "bad", "no faces" if len(mesh.f) == 0 else "coordinates that are not finite"
@@ -263,7 +267,14 @@ def checked(case, result):
     return "ok", f"{len(mesh.f)} faces"
 
 
+def files_of(case):
+    """The files that a case is to write and that are there."""
+    names = [p.get("value") for step in case.steps for p in step if p.get("type") == "RichSaveFile"]
+    return {name for name in names if name and pathlib.Path(name).exists()}
+
+
 def outcome(case):
+    before = files_of(case)
     saved = {} if case.result == "database" else {"out": None, **{f"in{i}_after": i for i in range(len(case.layers))}}
     result = lib.run(case.layers, case.steps, saved, timeout=60, memory=case.memory)
     if result.code is None:
@@ -277,6 +288,8 @@ def outcome(case):
         return checked(case, result)
     if result.code != 255:
         return "crash", f"exit code {result.code}: " + (result.errors.strip().splitlines() or [""])[-1][-150:]
+    if files_of(case) != before:
+        return "changed", "failed, but wrote " + ", ".join(files_of(case) - before)
     sentence = result.sentence.strip()
     good = sentence.endswith(".") and " " in sentence and "internal error" not in sentence
     return ("sentence" if good else "silent"), sentence

@@ -210,5 +210,30 @@ TEST_F(RasterIo, APhotographIsTurnedUpright) {
   EXPECT_EQ(read_image(turned).color.size(), cv::Size(16, 32));
 }
 
+TEST_F(RasterIo, SeveralFilesAreWrittenAllOrNone) {
+  const cv::Mat depth(4, 6, CV_32F, cv::Scalar(2)), image(4, 6, CV_8U, cv::Scalar(9));
+  {
+    OutputFiles files;
+    files.depth(depth, at("d.tif"));
+    files.image(image, at("i.png"));
+    files.image(image, "");
+    EXPECT_FALSE(fs::exists(at("d.tif")) || fs::exists(at("i.png")));
+    EXPECT_SAYS("cannot be written", files.image(image, at("nowhere/m.png")));
+  }
+  EXPECT_TRUE(fs::is_empty(folder)) << "drafts are left";
+  OutputFiles files;
+  files.depth(depth, at("d.tif"));
+  files.image(image, at("i.png"));
+  files.commit();
+  EXPECT_EQ(read_depth(at("d.tif")).at<float>(1, 1), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
+  OutputFiles::check_depth("");
+  OutputFiles::check_image(at("j.png"));
+  EXPECT_FALSE(fs::exists(at("j.png")));
+  EXPECT_SAYS("cannot be written", OutputFiles::check_depth(at("nowhere/d.tif")));
+  EXPECT_SAYS("no ending", OutputFiles::check_depth(at("d.png")));
+  EXPECT_SAYS("no ending", OutputFiles::check_image(at("d.pfm")));
+}
+
 }  // namespace
 }  // namespace parts
