@@ -19,6 +19,7 @@
 #include "depth/reconstruct_depth.h"
 #include "depth/view_search.h"
 #include "mappings/examples.h"
+#include "raster/mask.h"
 #include "synthesis/pyramid.h"
 
 using namespace parts;
