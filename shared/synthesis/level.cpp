@@ -62,6 +62,7 @@ LevelSetup make_setup(const std::vector<ImagePyramid>& examples, const Synthesis
                       double size) {
   LevelSetup setup;
   setup.level = level;
+  setup.searched = level >= options.carried;
   PatchLayout& layout = setup.layout;
   const int channels = int(options.channels.size()) + 1;  // and the silhouette
   layout.side = side;
@@ -98,6 +99,7 @@ namespace {
 
 PatchPlane pack(const ImagePyramid& pyramid, const std::vector<cv::Mat>& estimate, const SynthesisOptions& options,
                 const LevelSetup& setup) {
+  if (!setup.searched) return outline(pyramid.coverage[setup.level]);
   std::vector<cv::Mat> channels;
   for (size_t c = 0; c < options.channels.size(); ++c) {
     const PatchChannel& channel = options.channels[c];
@@ -110,7 +112,9 @@ PatchPlane pack(const ImagePyramid& pyramid, const std::vector<cv::Mat>& estimat
     channels.push_back(plane.empty() ? plane : cv::Mat(plane * setup.scale[c]));
   }
   channels.push_back(pyramid.coverage[setup.level] * setup.scale.back());
-  return make_patch_plane(channels, pyramid.coverage[setup.level], setup.layout);
+  PatchPlane plane = make_patch_plane(channels, pyramid.coverage[setup.level], setup.layout);
+  if (!options.centered) plane.centroid.setZero();
+  return plane;
 }
 
 }  // namespace

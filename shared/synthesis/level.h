@@ -18,6 +18,7 @@ struct LevelSetup {
   int level = 0;
   PatchLayout layout;
   std::vector<float> scale;  ///< a channel: root of the weight over the deviation; 1 if normalised
+  bool searched = true;      ///< false: windows vote but are not compared
 };
 LevelSetup make_setup(const std::vector<ImagePyramid>& examples, const SynthesisOptions& options, int level, int side,
                       double size);

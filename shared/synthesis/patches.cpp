@@ -55,6 +55,15 @@ void update_statistics(PatchPlane& plane, const cv::Mat& coverage, const PatchLa
   }
 }
 
+PatchPlane outline(const cv::Mat& coverage) {
+  PatchPlane plane;
+  plane.width = coverage.cols, plane.height = coverage.rows;
+  plane.inside.reserve(coverage.total());
+  for (int y = 0; y < plane.height; ++y)
+    for (int x = 0; x < plane.width; ++x) plane.inside.push_back(coverage.at<float>(y, x) >= 0.5f);
+  return plane;
+}
+
 PatchPlane make_patch_plane(const std::vector<cv::Mat>& channels, const cv::Mat& coverage, const PatchLayout& layout) {
   PatchPlane plane;
   plane.width = coverage.cols, plane.height = coverage.rows;

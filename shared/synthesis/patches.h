@@ -45,6 +45,8 @@ struct PatchPlane {
 /// @param channels  32F, all of one size and already scaled, at most lanes * 4; missing ones are 0
 /// @param coverage  32F, 0..1: how much of each pixel is foreground
 PatchPlane make_patch_plane(const std::vector<cv::Mat>& channels, const cv::Mat& coverage, const PatchLayout& layout);
+/// Only where windows may be: for voting, not for comparing.
+PatchPlane outline(const cv::Mat& coverage);
 /// The window statistics anew, after data has changed.
 void update_statistics(PatchPlane& plane, const cv::Mat& coverage, const PatchLayout& layout);
 

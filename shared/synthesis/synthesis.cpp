@@ -44,8 +44,8 @@ std::vector<int> level_sides(const PatchImage& query, const SynthesisOptions& op
 class Optimizer {
  public:
   Optimizer(const PatchImage& query, const std::vector<PatchImage>& examples, const SynthesisOptions& options,
-            const ExampleUpdate& update)
-      : options_(options), update_(update), sides_(level_sides(query, options)) {
+            const ExampleUpdate& update, const Agreement& agree)
+      : options_(options), update_(update), agree_(agree), sides_(level_sides(query, options)) {
     levels_ = int(sides_.size());
     PatchImage padded = query;
     padded.planes.resize(std::max(query.planes.size(), examples.front().planes.size()));
@@ -92,11 +92,12 @@ class Optimizer {
     setup_ = make_setup(pyramids_, options_, level_, sides_[levels_ - 1 - level_], size_);
     examples_.clear();
     for (size_t k = 0; k < pyramids_.size(); ++k) examples_.push_back(level_example(int(k)));
-    objective_.emplace_back();
+    if (setup_.searched) objective_.emplace_back();
     if (level_ == levels_ - 1)
       begin_coarsest();
     else
       begin_finer();
+    if (!setup_.searched) return;
     activate(true);
     build_tree();
     double last = -std::numeric_limits<double>::infinity();
@@ -127,6 +128,7 @@ class Optimizer {
       estimate_.push_back(extend(value, v.weight > 0));
     }
     coarse_.clear();
+    agree();
   }
 
   // The coarser level's matches, at twice their coordinates (4.1.1).
@@ -152,10 +154,15 @@ class Optimizer {
         if (!best) continue;
         const PatchPlane& e = examples_[best->example].plane;
         matches_[plane_.index(x, y)] = {best->example, std::clamp(2 * best->x + x - 2 * bx, 0, e.width - 1),
-                                        std::clamp(2 * best->y + y - 2 * by, 0, e.height - 1)};
+                                        std::clamp(2 * best->y + y - 2 * by, 0, e.height - 1), best->distance};
       }
     const std::vector<Votes> votes = vote_all();
     for (size_t s = 0; s < estimate_.size(); ++s) estimate_[s] = proposal(votes[s], int(s));
+    agree();
+  }
+
+  void agree() {
+    if (agree_) agree_(level_, estimate_);
   }
 
   std::vector<Votes> vote_all() const {
@@ -178,8 +185,11 @@ class Optimizer {
   // fixed matches it is a quadratic in each pixel.
   void maximize() {
     const std::vector<Votes> votes = vote_all();
+    const std::vector<cv::Mat> before = estimate_;
+    for (size_t s = 0; s < estimate_.size(); ++s) estimate_[s] = proposal(votes[s], int(s));
+    agree();
     for (size_t s = 0; s < estimate_.size(); ++s) {
-      const cv::Mat step = proposal(votes[s], int(s)) - estimate_[s];
+      const cv::Mat step = estimate_[s] - before[s];
       double gain = 0, curve = 0;
       const cv::Mat& coverage = query_.coverage[level_];
       for (int y = 0; y < step.rows; ++y)
@@ -187,11 +197,11 @@ class Optimizer {
           const double a = double(votes[s].weight.at<float>(y, x)) * coverage.at<float>(y, x);
           const double b = double(votes[s].value.at<float>(y, x)) * coverage.at<float>(y, x);
           const double d = step.at<float>(y, x);
-          gain += (b - a * estimate_[s].at<float>(y, x)) * d;
+          gain += (b - a * before[s].at<float>(y, x)) * d;
           curve += a * d * d;
         }
       const double t = curve > 0 ? std::clamp(gain / curve, 0.0, 1.0) : 0.0;
-      estimate_[s] = estimate_[s] + step * t;
+      estimate_[s] = before[s] + step * t;
     }
   }
 
@@ -254,6 +264,7 @@ class Optimizer {
 
   const SynthesisOptions& options_;
   const ExampleUpdate& update_;
+  const Agreement& agree_;
   std::vector<int> sides_;
   int levels_ = 1, level_ = 0;
   double size_ = 1;
@@ -273,11 +284,12 @@ class Optimizer {
 }  // namespace
 
 SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage>& examples,
-                           const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress) {
+                           const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress,
+                           const Agreement& agree) {
   if (examples.empty()) throw UserError("There is no example; give a database with at least one.");
   check_image(query, "the query", options.synthesized);
   for (size_t k = 0; k < examples.size(); ++k) check_image(examples[k], "example " + std::to_string(k), {});
-  return Optimizer(query, examples, options, update).run(progress);
+  return Optimizer(query, examples, options, update, agree).run(progress);
 }
 
 }  // namespace parts

@@ -35,10 +35,12 @@ struct SynthesisOptions {
   std::vector<int> patch_sizes{5, 7, 9};  ///< windows' sides in pixels, odd, coarse to fine: one a pyramid level
   double position = 1;                    ///< weight of the position relative to the foreground's centroid (4.1.4)
   double silhouette = 1;                  ///< weight of where a window is foreground
+  bool centered = true;                   ///< false: positions are the pixels' own, in images that are aligned
   double size = 0;                        ///< pixels that count 1 in positions; 0: root of the query's foreground
   int max_iterations = 10;                ///< a level
   double tolerance = 0.005;   ///< stops a level when an iteration gains less than this share of the objective
   int longest_coarsest = 64;  ///< pixels: a larger coarsest level is halved, with the first patch size; 0: never
+  int carried = 0;            ///< finest levels without a search: the matches of the level above, carried on
   double pca_share = 0;       ///< of the principal components (5.2) that propose candidates; 0 = the first 14
   bool exact_search = false;  ///< compare every window with every other: slow, to judge the search by
   int threads = 0;            ///< 0 = all cores; the result does not depend on it
@@ -74,12 +76,18 @@ struct SynthesisResult {
   std::vector<char> active;                    ///< whether an example was still searched in the end
 };
 
+/// Makes estimated planes of a level agree where several pixels show one thing
+/// (a linear projection, so that the objective still never falls).
+/// @param level  0 = finest; pixel x of it lies at pixel x * 2^level of the finest
+using Agreement = std::function<void(int level, std::vector<cv::Mat>& planes)>;
+
 /// Finds the planes that make every window of the query like a window of the
 /// examples: hard EM on the plausibility of eq. 3, coarse to fine.
 /// @param query, examples  the same size in pixels is not needed, the same scale is
 /// @throws UserError  no example, sizes that differ within an image, an empty
 ///                    mask, an even patch size or one larger than the image
 SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage>& examples,
-                           const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress);
+                           const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress,
+                           const Agreement& agree = {});
 
 }  // namespace parts

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "mappings/example.h"
+#include "synthesis/synthesis.h"
+
+/// What the colouring of depth maps and of meshes have in common: which objects
+/// give their colours, as which planes, and how these are weighed.
+namespace parts {
+
+struct ColorizeOptions {
+  int examples = 2;                        ///< objects whose colours are used; 1 morphs one image-map onto the shape
+  std::vector<std::string> choose;         ///< their labels; empty: those whose depth is most like the query's
+  View view;                               ///< from which the depth was seen, of examples that have several
+  std::vector<int> patch_sizes{9, 11, 7};  ///< windows' sides in pixels, odd, coarse to fine: one a pyramid level
+  double weight_depth = 3;                 ///< weights: 1 = a difference of one standard deviation counts 1
+  double weight_detail = 3;                ///< of the depth's high frequencies
+  double weight_y = 1, weight_cb = 0.3, weight_cr = 0.3;
+  double weight_position = 5;  ///< of the place relative to the foreground's centroid
+  int max_iterations = 10;     ///< a level
+  double pca_share = 0.2;      ///< of the principal components that propose candidates (5.2)
+  bool harmonize = true;       ///< examples of another exposure or tint are matched to the best one
+  unsigned seed = 0;           ///< 0: the most similar examples; others: drawn among the more similar half
+  int threads = 0;             ///< 0 = all cores; the result does not depend on it
+};
+
+/// How a colouring went.
+struct ColorizeReport {
+  std::vector<std::string> used;               ///< labels of the examples, the most similar first
+  std::vector<double> shares;                  ///< of the foreground that each of them gave
+  std::vector<std::string> harmonized;         ///< labels of those whose colours were changed
+  std::vector<std::vector<double>> objective;  ///< per level and iteration: mean log Sim (eq. 3)
+  bool aligned = false;                        ///< the query was moved and scaled into the examples' frame
+  double patch_distance = 0;                   ///< root mean square difference of patches, in standard deviations
+};
+
+/// The planes of an example. Colours are 0..1; the relief is depth about its
+/// mean, in pixels.
+enum ColorPlane { kReliefPlane, kYPlane, kCbPlane, kCrPlane };
+
+struct ColorExample {
+  int object = 0;
+  std::string name;
+  double difference = 0;  ///< of its relief to the query's, squared pixels
+  PatchImage image;       ///< as ColorPlane says
+};
+
+PatchImage color_planes(const Example& example);
+/// @param depth  32F, NaN = background, which becomes 0
+cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit);
+/// The relief's standard deviation over the foreground.
+double relief_spread(const PatchImage& image);
+
+/// The objects that may give colours, by their numbers: all, or those named.
+/// @param name  of each object; labels may leave the file's ending out
+/// @throws UserError  a label that no object has
+std::vector<int> choosable(const std::vector<std::string>& names, const std::vector<std::string>& labels);
+
+/// Sorts by similarity of shape and keeps options.examples of them: the most
+/// similar one, and others that go with its colours too. With a seed the first
+/// is drawn among the better half. Those chosen by name are all kept.
+/// @throws UserError  options.examples is below 1
+void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options);
+
+/// Takes off an example what makes it differ from another all over: exposure or
+/// tint. What differs here and there (a red coat and a blue one) is no tint.
+/// @return whether there was such a difference
+bool harmonize(PatchImage& image, const PatchImage& like);
+
+/// The engine's channels and weights.
+SynthesisOptions color_synthesis(const ColorizeOptions& options);
+
+/// BGR, 8 bits, from Y, Cb and Cr as 32F.
+cv::Mat to_color(const std::vector<cv::Mat>& ycbcr);
+
+/// Fills used, harmonized and the images, in the order of the examples.
+std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, bool harmonized, ColorizeReport& report);
+
+/// Fills shares, objective and patch_distance.
+void report_synthesis(const SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report);
+
+}  // namespace parts
