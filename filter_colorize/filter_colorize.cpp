@@ -4,6 +4,6 @@
 
 namespace parts {
 
-std::vector<host::Filter> host::filters() { return {colorize_depth_filter()}; }
+std::vector<host::Filter> host::filters() { return {colorize_depth_filter(), colorize_mesh_filter()}; }
 
 }  // namespace parts

@@ -6,5 +6,6 @@
 namespace parts {
 
 host::Filter colorize_depth_filter();
+host::Filter colorize_mesh_filter();
 
 }  // namespace parts

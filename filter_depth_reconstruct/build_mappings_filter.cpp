@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "filters.h"
+#include "host/common.h"
 #include "mappings/build_mappings.h"
 
 namespace parts {
@@ -38,12 +39,6 @@ std::vector<Parameter> parameters(const Scene&) {
   };
 }
 
-/// The value of a direction; at its default, what the class says.
-Vec3 direction(const Inputs& inputs, const char* name, const Vec3& fallback, const std::optional<Vec3>& of_class) {
-  const Vec3 given = inputs.point(name);
-  return of_class && (given - fallback).norm() < 1e-6 ? *of_class : given;
-}
-
 Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   ExampleOptions options;
@@ -56,8 +51,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const ModelDatabase models(inputs.text("Models"), progress);
   const ClassPreset preset = read_class_preset(models.path());
   const ExampleOptions fallback;
-  options.up = direction(inputs, "Up", fallback.up, preset.up);
-  options.front = direction(inputs, "Front", fallback.front, preset.front);
+  options.up = class_direction(inputs, "Up", fallback.up, preset.up);
+  options.front = class_direction(inputs, "Front", fallback.front, preset.front);
 
   const MappingsReport report = build_mappings(models, views, inputs.text("Output"), options, progress);
   log_value(progress, "objects", report.objects);

@@ -73,6 +73,12 @@ std::string class_text(const Inputs& inputs, const ClassPreset& preset, const ch
   return given == fallback ? preset.text(slug, name).value_or(given) : given;
 }
 
+Vec3 class_direction(const Inputs& inputs, const char* name, const Vec3& fallback,
+                     const std::optional<Vec3>& of_class) {
+  const Vec3 given = inputs.point(name);
+  return of_class && (given - fallback).norm() < 1e-6 ? *of_class : given;
+}
+
 void refuse_inputs(const Inputs& inputs, const std::vector<const char*>& outputs,
                    const std::vector<std::string>& input_files) {
   std::error_code missing;

@@ -31,6 +31,9 @@ double class_number(const Inputs& inputs, const ClassPreset& preset, const char*
 std::string class_text(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
                        const std::string& fallback);
 
+/// The value of a direction; at its default, what the class says.
+Vec3 class_direction(const Inputs& inputs, const char* name, const Vec3& fallback, const std::optional<Vec3>& of_class);
+
 /// @throws UserError  a file that an output parameter names is one of the
 ///                    inputs, or that of another output
 void refuse_inputs(const Inputs& inputs, const std::vector<const char*>& outputs,

@@ -120,7 +120,7 @@ struct Outcome {
 };
 
 /// The menus that the suite's filters appear in. Creation: needs no layer.
-enum class Menu { Remeshing, Deformation, Placement, Creation };
+enum class Menu { Remeshing, Deformation, Placement, Texturing, Creation };
 
 struct Filter {
   std::string name;  ///< "Group: Action"; never changes

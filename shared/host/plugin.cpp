@@ -84,6 +84,9 @@ MeshFilterInterface::FilterClass Plugin::getClass(QAction* action) {
     case Menu::Placement:
       menus = Normal | Layer;
       break;
+    case Menu::Texturing:
+      menus = VertexColoring | Layer;
+      break;
     case Menu::Creation:  // alone: the host offers only this menu in a document without meshes
       menus = MeshCreation;
       break;

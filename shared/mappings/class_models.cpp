@@ -99,16 +99,19 @@ std::string ClassModels::measure(const std::vector<View>& views, Progress& progr
   return first_flaw;
 }
 
+double ClassModels::shown_size(double diagonal) const {
+  return diagonal < kAlike * median_ && median_ < kAlike * diagonal ? median_ : diagonal;
+}
+
 void ClassModels::settle_frame(Progress& progress) {
   std::vector<double> sizes;
   for (const Entry& e : entries_) sizes.push_back(e.diagonal);
   std::nth_element(sizes.begin(), sizes.begin() + long(sizes.size() / 2), sizes.end());
-  const double median = sizes[sizes.size() / 2];
+  median_ = sizes[sizes.size() / 2];
   frame_ = std::numeric_limits<double>::max();
   for (Entry& e : entries_) {
-    const bool alike = e.diagonal < kAlike * median && median < kAlike * e.diagonal;
-    e.size = alike ? median : e.diagonal;
-    if (!alike) progress.log("rescaled: " + e.name);
+    e.size = shown_size(e.diagonal);
+    if (e.size != median_) progress.log("rescaled: " + e.name);
     if (e.loaded) e.loaded->size = e.size;
     const Eigen::Vector2d room = (0.5 - options_.margin) * Eigen::Vector2d(options_.width, options_.height);
     for (int k = 0; k < 2; ++k)

@@ -23,6 +23,8 @@ class ClassModels {
   const std::string& name(int i) const { return entries_[i].name; }
   double frame() const { return frame_; }  ///< see render_example
   std::vector<std::string> files() const;  ///< models and textures
+  /// ClassModel::size of a model with such a diagonal: that of the others, if it is about as large.
+  double shown_size(double diagonal) const;
   /// Valid until the next call.
   const ClassModel& get(int i);
 
@@ -46,7 +48,7 @@ class ClassModels {
   ExampleOptions options_;
   std::vector<Entry> entries_;
   std::list<int> recent_;  ///< loaded ones, the last used first
-  double frame_ = 1, bytes_ = 0;
+  double frame_ = 1, median_ = 1, bytes_ = 0;
 };
 
 }  // namespace parts

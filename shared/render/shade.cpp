@@ -3,55 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "geometry/parallel.h"
+#include "render/surface_color.h"
 
 namespace parts {
 
-Textures load_textures(const Mesh& mesh) {
-  Textures textures;
-  for (const std::string& file : mesh.textures) {
-    std::vector<cv::Mat> levels;
-    cv::Mat image;
-    std::error_code error;
-    try {
-      if (std::filesystem::is_regular_file(file, error)) image = cv::imread(file, cv::IMREAD_COLOR);
-    } catch (const cv::Exception&) {  // larger than OpenCV reads
-    }
-    while (!image.empty()) {
-      levels.push_back(image);
-      if (image.cols < 2 || image.rows < 2) break;
-      cv::resize(image, image, cv::Size(image.cols / 2, image.rows / 2), 0, 0, cv::INTER_AREA);
-    }
-    textures.images.push_back(levels);
-  }
-  return textures;
-}
-
 namespace {
 
-using Vec2f = Eigen::Vector2f;
 using Vec3f = Eigen::Vector3f;
-
-Vec3f bgr(const Color& c) { return {float(c[2]), float(c[1]), float(c[0])}; }
-
-/// Bilinear; the image repeats and its first row is at v = 1.
-Vec3f sample(const cv::Mat& image, const Vec2f& uv) {
-  const auto wrapped = [](float x) { return std::isfinite(x) ? x - std::floor(x) : 0.f; };
-  const float x = wrapped(uv.x()) * float(image.cols) - 0.5f, y = wrapped(1 - uv.y()) * float(image.rows) - 0.5f;
-  const int column = int(std::floor(x)), row = int(std::floor(y));
-  const float fx = x - float(column), fy = y - float(row);
-  const auto texel = [&](int c, int r) {
-    c = (c + image.cols) % image.cols, r = (r + image.rows) % image.rows;
-    const std::uint8_t* t = image.ptr<std::uint8_t>(r) + 3 * c;
-    return Vec3f(t[0], t[1], t[2]);
-  };
-  return (1 - fy) * ((1 - fx) * texel(column, row) + fx * texel(column + 1, row)) +
-         fy * ((1 - fx) * texel(column, row + 1) + fx * texel(column + 1, row + 1));
-}
 
 Vec3f face_normal(const Mesh& mesh, int f) {
   const Vec3& a = mesh.corner(f, 0);
@@ -108,7 +68,8 @@ class Shader {
     Vec3f w = Vec3f(float(wa), float(wb), float(wc));
     if (perspective_) w = w.cwiseQuotient(Vec3f(float(a.z), float(b.z), float(c.z)));
     w /= w.sum();
-    Vec3f color = color_of(face, w, std::abs(area));
+    Vec3f color =
+        options_.colors ? surface_color(mesh_, textures_, face, w, std::abs(area), options_.base) : bgr(options_.base);
     if (options_.mark_back_faces && !front) color = 0.3f * color + 0.7f * Vec3f(60, 60, 200);
     if (options_.edge_width > 0) color *= 1 - 0.65f * edge(a, b, c, std::abs(area), wa, wb, wc);
     return color * light(normal_of(face, w, front));
@@ -137,30 +98,6 @@ class Shader {
     const float diffuse = (1 - ambient) * std::max(0.f, n.dot(light_));
     const float slant = 1 - std::clamp(n.z(), 0.f, 1.f);
     return (ambient * (1 - sky * 0.5f * (1 - n.y())) + diffuse) * (1 - rim * slant * slant);
-  }
-
-  Vec3f color_of(int face, const Vec3f& w, double screen_area) const {
-    if (!options_.colors) return bgr(options_.base);
-    if (!mesh_.wedges.empty()) {
-      const Wedges& wedges = mesh_.wedges[face];
-      if (wedges.texture >= 0 && wedges.texture < int(textures_.images.size()))
-        if (const auto& levels = textures_.images[wedges.texture]; !levels.empty())
-          return textured(levels, wedges.uv, w, screen_area);
-    }
-    const Triangle& t = mesh_.faces[face];
-    const auto& vc = mesh_.vertex_color;
-    if (!vc.empty()) return w[0] * bgr(vc[t[0]]) + w[1] * bgr(vc[t[1]]) + w[2] * bgr(vc[t[2]]);
-    return bgr(mesh_.face_color.empty() ? options_.base : mesh_.face_color[face]);
-  }
-
-  /// From the level whose texels are about as large as the pixels.
-  static Vec3f textured(const std::vector<cv::Mat>& levels, const std::array<Vec2f, 3>& uv, const Vec3f& w,
-                        double screen_area) {
-    const Vec2f u = uv[1] - uv[0], v = uv[2] - uv[0];
-    const double texels = std::abs(double(u.x()) * v.y() - double(u.y()) * v.x()) * levels[0].cols * levels[0].rows;
-    const double level = texels > screen_area ? std::log2(texels / screen_area) / 2 : 0;
-    const int l = std::isfinite(level) ? std::min(int(level + 0.5), int(levels.size()) - 1) : 0;
-    return sample(levels[l], w[0] * uv[0] + w[1] * uv[1] + w[2] * uv[2]);
   }
 
   /// 1 on the face's sides, 0 where they are farther than half a line's width.

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+#include <filesystem>
+
+#include "colorize/colorize_mesh.h"
+#include "filters.h"
+#include "geometry/error.h"
+#include "host/common.h"
+#include "parameters.h"
+#include "raster/raster_io.h"
+#include "raster/texture.h"
+#include "recent_models.h"
+#include "synthesis/usage_picture.h"
+#include "voxel/memory.h"
+
+namespace parts {
+namespace {
+
+using namespace host;
+
+constexpr const char *slug = "colorize_mesh", *around = "0,0; 60,0; 120,0; 180,0; -120,0; -60,0; 0,75; 0,-75";
+enum Target { kTexture, kVertexColor };
+
+std::vector<Parameter> parameters(const Scene&) {
+  const ColorizeMeshOptions o;
+  std::vector<Parameter> list{
+      current_layer("Mesh", "Mesh", "The surface that is to be coloured. It stays as it is."),
+      open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Database",
+                "Textured or vertex-coloured models of the same class: a project or a folder, for which any file in it "
+                "stands."),
+      text("Views", around, "Views",
+           "From where the surface is seen and coloured: yaw,pitch in degrees, separated by semicolons. What no view "
+           "sees follows the most similar model."),
+      point("Up", o.up, "Up",
+            "The direction in which mesh and models stand. Where the class's preset has another one, the models stand "
+            "as it says."),
+      point("Front", o.front, "Front", "The direction in which they face; as for Up."),
+      integer("Width", 300, 8, 4096, "Width (pixels)", "Columns of the views: more give finer colours."),
+      integer("Height", 400, 8, 4096, "Height (pixels)", "Rows of the views."),
+      choice("Target", kTexture, {"Texture", "Vertex colour"}, "Target",
+             "A texture in the mesh's own texture coordinates, or in new ones where it has none that would do; or "
+             "colours of vertices."),
+      save_file("TextureFile", "png", "Texture",
+                "Where the texture is written. Empty: NAME_texture.png in the current folder, after the layer's name."),
+      integer("TextureSize", 1024, 16, 16384, "Texture size (texels)", "Rows and columns of the texture."),
+  };
+  add_synthesis(list);
+  list.push_back(flag("Align", true, "Align",
+                      "Moves the mesh onto the most similar model for the comparison, where they are nearly aligned "
+                      "already. The mesh itself is not moved."));
+  list.push_back(
+      save_file("UsageFile", "png", "Usage picture",
+                "Where a picture of the views is written with a colour for each example. Empty: not at all."));
+  return list;
+}
+
+ColorizeMeshOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
+  ColorizeMeshOptions o;
+  const ExampleOptions fallback;
+  read_synthesis(inputs, preset, slug, o);
+  o.views = parse_views(inputs.text("Views"));
+  o.up = class_direction(inputs, "Up", fallback.up, preset.up);
+  o.front = class_direction(inputs, "Front", fallback.front, preset.front);
+  o.rendering.up = preset.up.value_or(o.up);
+  o.rendering.front = preset.front.value_or(o.front);
+  o.rendering.width = inputs.integer("Width");
+  o.rendering.height = inputs.integer("Height");
+  o.rendering.ambient = 1, o.rendering.back = false;
+  o.align = inputs.flag("Align");
+  return o;
+}
+
+void check_texture_size(int size) {
+  constexpr double kBytes = 40;  // a texel while it is found
+  const double needed = kBytes * size * size;
+  if (needed > available_memory())
+    throw UserError("A texture of " + std::to_string(size) + " x " + std::to_string(size) + " needs about " +
+                    std::to_string(int(needed / 1e6)) + " MB to make and " + std::to_string(int(available_memory() / 1e6)) +
+                    " MB are free; choose a smaller TextureSize.");
+}
+
+/// The mesh with a texture: its picture, its file.
+void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, std::vector<std::string> kept,
+                 Progress& progress) {
+  const int size = inputs.integer("TextureSize");
+  const std::string flaw = texture_coordinates_flaw(mesh, size);
+  if (!flaw.empty()) {
+    Atlas atlas = make_atlas(mesh, size);
+    log_value(progress, "own_texture_coordinates", flaw);
+    log_value(progress, "charts", atlas.charts);
+    mesh.wedges = std::move(atlas.wedges);
+  }
+  kept.insert(kept.end(), mesh.textures.begin(), mesh.textures.end());
+  const BakedTexture baked = bake_texture(mesh, mesh.wedges, size, colors, 0);
+  std::string name = std::filesystem::path(inputs.layer("Mesh").name()).filename().string();
+  if (name.empty()) name = "colorized";
+  mesh.textures = {write_texture(baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
+  mesh.vertex_color.clear(), mesh.face_color.clear();
+  log_value(progress, "texture", mesh.textures[0]);
+}
+
+Outcome apply(const Inputs& inputs, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string database = inputs.text("Database"), usage_file = inputs.text("UsageFile");
+  if (database.empty()) throw UserError("No database is named; choose a project or a folder of coloured models.");
+  refuse_inputs(inputs, {"TextureFile", "UsageFile"}, {database});
+  if (inputs.choice("Target") == kTexture) check_texture_size(inputs.integer("TextureSize"));
+  Mesh mesh = surface_of(inputs.layer("Mesh"));
+  Progress opening = progress.part(0, 20), coloring = progress.part(20, 90);
+  opening.stage("Reading the models", 0, 100);
+  const ModelDatabase listed(database, opening);
+  const ColorizeMeshOptions options = options_of(inputs, read_class_preset(listed.path()));
+  const auto models = recent_models(listed, options.views, options.rendering, opening);
+  refuse_inputs(inputs, {"TextureFile", "UsageFile"}, models->files());
+
+  const MeshColors colors = colorize_mesh(mesh, *models, options, coloring);
+  progress.stage("Writing", 90, 100);
+  if (inputs.choice("Target") == kTexture) {
+    add_texture(mesh, colors, inputs, models->files(), progress);
+  } else {
+    mesh.vertex_color = vertex_colors(colors);
+    mesh.wedges.clear(), mesh.textures.clear(), mesh.face_color.clear();
+  }
+  if (!usage_file.empty()) write_image(usage_picture(colors.example), usage_file);
+  log_report(colors, progress);
+  log_value(progress, "seen", colors.seen);
+  log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  Outcome outcome;
+  outcome.layers.push_back({"Colorized", std::move(mesh)});
+  outcome.current = 0;
+  outcome.hidden = {inputs.layer("Mesh")};
+  return outcome;
+}
+
+}  // namespace
+
+host::Filter colorize_mesh_filter() {
+  return {"Examples: Colorize Mesh",
+          slug,
+          Menu::Texturing,
+          "Finds colours for a whole mesh from <b>coloured models of its class</b>: several views are coloured "
+          "together, so that they agree wherever they show the same point. The result is a copy with a texture or "
+          "vertex colours.<br><br>See:<br><i>T. Hassner, R. Basri</i><br><b>\"Automatic depth-map "
+          "colorization\"</b><br>Eurographics 2006, short papers",
+          parameters,
+          apply};
+}
+
+}  // namespace parts

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "colorize/color_examples.h"
+#include "host/filter.h"
+
+namespace parts {
+
+/// What both filters ask about the synthesis: Examples ... Seed.
+void add_synthesis(std::vector<host::Parameter>& list);
+/// @param preset  what the class says where the user says nothing
+void read_synthesis(const host::Inputs& inputs, const ClassPreset& preset, const char* slug, ColorizeOptions& options);
+
+void log_report(const ColorizeReport& report, Progress& progress);
+
+}  // namespace parts

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "mappings/class_models.h"
+
+namespace parts {
+
+/// The models of a database as last time, where nothing about it has changed:
+/// many filters of one script read it once. What reading it logged is logged again.
+std::shared_ptr<ClassModels> recent_models(const ModelDatabase& database, const std::vector<View>& views,
+                                           const ExampleOptions& options, Progress& progress);
+
+}  // namespace parts

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "colorize/colorize_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "align/align.h"
+#include "colorize/hidden_colors.h"
+#include "geometry/attributes.h"
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "render/surface_color.h"
+#include "synthesis/pyramid.h"
+#include "voxel/memory.h"
+
+namespace parts {
+namespace {
+
+using Vec3f = Eigen::Vector3f;
+
+constexpr int kComparison = 96;       // pixels of views by which models are compared
+constexpr int kSearched = 256;        // of the finest level at which patches are searched
+constexpr int kCoarsest = 64;         // of the coarsest level, at most
+constexpr float kClearlySeen = 0.1f;  // see ViewSheet::look(): below, hidden_colors take over
+
+/// Side by side; all of one height.
+PatchImage beside(const std::vector<PatchImage>& images) {
+  PatchImage all;
+  const auto join = [&](const auto& part, cv::Mat& to) {
+    std::vector<cv::Mat> row;
+    for (const PatchImage& i : images) row.push_back(part(i));
+    cv::hconcat(row, to);
+  };
+  join([](const PatchImage& i) { return i.mask; }, all.mask);
+  all.planes.resize(images.front().planes.size());
+  for (std::size_t p = 0; p < all.planes.size(); ++p)
+    join([p](const PatchImage& i) { return i.planes[p]; }, all.planes[p]);
+  return all;
+}
+
+std::vector<Example> see(const ClassModel& model, double frame, const ColorizeMeshOptions& options,
+                         const ExampleOptions& rendering) {
+  std::vector<Example> all;
+  for (const View& view : options.views) all.push_back(render_example(model, view, frame, rendering));
+  return all;
+}
+
+std::vector<PatchImage> planes_of(const std::vector<Example>& views) {
+  std::vector<PatchImage> all;
+  for (const Example& view : views) all.push_back(color_planes(view));
+  return all;
+}
+
+/// As large as in the class and standing like it, its middle in the origin: in
+/// the frame of the views.
+ClassModel pose(const Mesh& mesh, const ClassModels& models, const ColorizeMeshOptions& options) {
+  ClassModel query;
+  query.mesh = mesh;
+  query.mesh.wedges.clear(), query.mesh.vertex_color.clear(), query.mesh.face_color.clear();
+  query.mesh.vertex_normal.clear();
+  for (const Triangle& f : mesh.faces)
+    for (int v : f)
+      if (!mesh.vertices[v].allFinite())
+        throw UserError("The mesh has coordinates that are not finite; remove those vertices first.");
+  const Box box = mesh.bounds();
+  if (!(box.diagonal().norm() > 0)) throw UserError("All of the mesh lies in one point; choose a surface.");
+  const double size = models.shown_size(box.diagonal().norm());
+  const ExampleOptions& r = options.rendering;
+  const Eigen::Matrix3d turn =
+      view_rotation({}, r.up, r.front).transpose() * view_rotation({}, options.up, options.front);
+  for (Vec3& v : query.mesh.vertices) v = turn * (v - box.center()) / size;
+  return query;
+}
+
+/// A model's vertices in the frame of the views.
+Mesh in_frame(const ClassModel& model) {
+  Mesh mesh;
+  mesh.faces = model.mesh.faces;
+  for (const Vec3& v : model.mesh.vertices) mesh.vertices.push_back((v - model.center) / model.size);
+  return mesh;
+}
+
+/// Moves the query onto a model where they are nearly aligned already.
+bool align(ClassModel& query, const ClassModel& model, int threads, Progress& progress) {
+  constexpr double kMostTurned = 20 * EIGEN_PI / 180, kMostScaled = 1.5, kGain = 0.9;
+  AlignOptions options;
+  options.coarse = false, options.allow_scale = true, options.overlap = 0.75, options.threads = threads;
+  const AlignResult found = align_part_in_whole(query.mesh, {}, in_frame(model), {}, options, progress);
+  const Eigen::Matrix3d linear = found.matrix.topLeftCorner<3, 3>();
+  const double scale = std::cbrt(std::abs(linear.determinant()));
+  const double turned = Eigen::AngleAxisd(Eigen::Matrix3d(linear / scale)).angle();
+  if (turned > kMostTurned || scale > kMostScaled || scale < 1 / kMostScaled ||
+      found.rms_after > kGain * found.rms_before)
+    return false;
+  for (Vec3& v : query.mesh.vertices) v = linear * v + found.matrix.topRightCorner<3, 1>();
+  return true;
+}
+
+/// Pixels a unit of the frame: that of the class, less if the query needs more room.
+double frame_for(const ClassModel& query, const ClassModels& models, const ColorizeMeshOptions& options) {
+  const ExampleOptions& r = options.rendering;
+  double frame = models.frame();
+  for (const View& view : options.views) {
+    const Eigen::Vector2d reach = extent(query.mesh, query.center, view_rotation(view, r.up, r.front));
+    frame = std::min(frame, 0.48 * std::min(r.width / std::max(reach.x(), 1e-9), r.height / std::max(reach.y(), 1e-9)));
+  }
+  return frame;
+}
+
+/// Compares the query with every model by small views, and keeps those that give their colours.
+std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, const ColorizeMeshOptions& options,
+                                 double frame, Progress& progress) {
+  ExampleOptions small = options.rendering;
+  const double shrink = std::min(1.0, double(kComparison) / std::max(small.width, small.height));
+  small.width = std::max(8, int(small.width * shrink)), small.height = std::max(8, int(small.height * shrink));
+  const PatchImage seen = beside(planes_of(see(query, frame * shrink, options, small)));
+  if (cv::countNonZero(seen.mask) < 16) throw UserError("No view shows the mesh; check Views, Up and Front.");
+  std::vector<std::string> names;
+  for (int i = 0; i < models.size(); ++i) names.push_back(models.name(i));
+  std::vector<ColorExample> all;
+  for (int i : choosable(names, options.choose)) {
+    progress.at(double(i) / models.size());
+    const ClassModel& model = models.get(i);
+    if (!has_colors(model.mesh, model.textures)) {
+      progress.log("without_colours: " + model.name);
+      continue;
+    }
+    all.push_back({i, names[i], 0, beside(planes_of(see(model, frame * shrink, options, small)))});
+  }
+  if (all.empty())
+    throw UserError("No model of the database has colours; give models with textures or vertex colours.");
+  select_examples(all, seen, options);
+  return all;
+}
+
+/// What of each view holds the query or an example.
+std::vector<cv::Rect> used_parts(const std::vector<std::vector<PatchImage>>& objects) {
+  std::vector<cv::Rect> parts;
+  for (std::size_t v = 0; v < objects.front().size(); ++v) {
+    cv::Mat any = objects.front()[v].mask.clone();
+    for (const auto& views : objects) any |= views[v].mask;
+    const cv::Rect all({0, 0}, any.size()), box = cv::boundingRect(any);
+    parts.push_back(box.empty() ? cv::Rect(0, 0, 1, 1)
+                                : cv::Rect(box.x - 4, box.y - 4, box.width + 8, box.height + 8) & all);
+  }
+  return parts;
+}
+
+/// Levels to search, those above them that only carry matches on.
+SynthesisOptions synthesis_for(const ColorizeMeshOptions& options, int longest, double foreground) {
+  SynthesisOptions s = color_synthesis(options);
+  s.centered = false;
+  s.size = std::sqrt(foreground);
+  s.longest_coarsest = 0;
+  if (s.patch_sizes.empty()) return s;  // the engine says so
+  while ((longest >> s.carried) > kSearched) ++s.carried;
+  while ((longest >> (s.carried + int(s.patch_sizes.size()) - 1)) > kCoarsest)
+    s.patch_sizes.insert(s.patch_sizes.begin(), s.patch_sizes.front());
+  s.patch_sizes.insert(s.patch_sizes.end(), s.carried, s.patch_sizes.back());
+  return s;
+}
+
+void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
+  constexpr double kBytes = 180;  // a pixel and image: planes, bands, pyramids, matches
+  double pixels = 0;
+  for (const cv::Rect& part : parts) pixels += double(part.area());
+  const double needed = pixels * kBytes * double(images);
+  if (needed > available_memory())
+    throw UserError("The views need about " + std::to_string(int(needed / 1e6)) + " MB and " +
+                    std::to_string(int(available_memory() / 1e6)) +
+                    " MB are free; choose a smaller Width and Height, fewer Views or fewer Examples.");
+}
+
+std::vector<Vec3f> normals_of(const Mesh& mesh) {
+  Mesh m;
+  m.vertices = mesh.vertices, m.faces = mesh.faces;
+  update_normals(m);
+  return m.vertex_normal;
+}
+
+/// Whether nearly all that is seen are front faces.
+bool faces_outwards(const ClassModel& query, double frame, const ColorizeMeshOptions& options) {
+  long front = 0, all = 0;
+  ExampleOptions small = options.rendering;
+  for (const View& view : options.views) {
+    Camera camera;
+    camera.rotation = view_rotation(view, small.up, small.front);
+    camera.width = camera.height = kComparison;
+    camera.center = {kComparison / 2., kComparison / 2.};
+    camera.scale = frame * kComparison / std::max(small.width, small.height);
+    camera.eye = camera.rotation.row(2).transpose();
+    RenderOptions look;
+    look.threads = options.threads;
+    const cv::Mat face = render(query.mesh, {}, camera, look).face;
+    for (int y = 0; y < face.rows; ++y)
+      for (int x = 0; x < face.cols; ++x)
+        if (const int f = face.at<int>(y, x); f >= 0) {
+          const Vec3 n = (query.mesh.corner(f, 1) - query.mesh.corner(f, 0))
+                             .cross(query.mesh.corner(f, 2) - query.mesh.corner(f, 0));
+          front += n.dot(camera.rotation.row(2)) > 0, ++all;
+        }
+  }
+  return double(front) > 0.95 * double(all);
+}
+
+/// Colours of the vertices: what views see, and completed by the model.
+void color_vertices(const Mesh& posed, const ClassModel& like, int threads, MeshColors& colors) {
+  const std::vector<Vec3f> normals = colors.oriented ? normals_of(posed) : std::vector<Vec3f>();
+  colors.vertex.assign(posed.vertices.size(), Vec3f(0.5f, 128 / 255.f, 128 / 255.f));
+  std::vector<char> known(posed.vertices.size(), 0);
+  parallel_for(posed.vertex_count(), threads, [&](long begin, long end) {
+    for (long v = begin; v < end; ++v) {
+      const Vec3 n = normals.empty() ? Vec3::Zero() : Vec3(normals[v].cast<double>());
+      known[v] = colors.sheet.look(colors.planes, 0, posed.vertices[v], n, colors.vertex[v].data()) > kClearlySeen;
+    }
+  });
+  double area = 0, seen = 0;
+  for (const Triangle& f : posed.faces) {
+    const double a =
+        (posed.vertices[f[1]] - posed.vertices[f[0]]).cross(posed.vertices[f[2]] - posed.vertices[f[0]]).norm();
+    if (!std::isfinite(a)) continue;
+    area += a, seen += a * (known[f[0]] + known[f[1]] + known[f[2]]) / 3;
+  }
+  colors.seen = area > 0 ? seen / area : 0;
+  Mesh there;
+  there.faces = posed.faces;
+  for (const Vec3& v : posed.vertices) there.vertices.push_back(v * like.size + like.center);
+  complete_colors(there, known, like, colors.vertex, threads);
+}
+
+}  // namespace
+
+Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
+  const Triangle& t = mesh.faces[face];
+  const Vec3 p = double(b[0]) * posed[t[0]] + double(b[1]) * posed[t[1]] + double(b[2]) * posed[t[2]];
+  const Vec3 n =
+      oriented ? Vec3((posed[t[1]] - posed[t[0]]).cross(posed[t[2]] - posed[t[0]]).normalized()) : Vec3::Zero();
+  const Vec3f mean = b[0] * vertex[t[0]] + b[1] * vertex[t[1]] + b[2] * vertex[t[2]];
+  Vec3f direct = mean;
+  const float share = std::min(1.f, sheet.look(planes, 0, p, n, direct.data()) / kClearlySeen);
+  return share * direct + (1 - share) * mean;
+}
+
+MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMeshOptions& options,
+                         Progress& progress) {
+  if (mesh.faces.empty()) throw UserError("The mesh has no faces; choose a layer that holds a surface.");
+  if (options.views.empty()) throw UserError("No view is given; give yaw,pitch in degrees, as in 0,0; 90,0; 180,0.");
+  MeshColors result;
+  ClassModel query = pose(mesh, models, options);
+  double frame = frame_for(query, models, options);
+  progress.stage("Comparing with the models", 0, 20);
+  std::vector<ColorExample> examples = choose(query, models, options, frame, progress);
+  if (options.align) {
+    Progress aligning = progress.part(20, 25);
+    result.aligned = align(query, models.get(examples.front().object), options.threads, aligning);
+    if (result.aligned) {
+      frame = frame_for(query, models, options);
+      progress.stage("Comparing with the models", 25, 30);
+      examples = choose(query, models, options, frame, progress);
+    }
+  }
+  const std::vector<Example> seen = see(query, frame, options, options.rendering);
+  std::vector<std::vector<PatchImage>> planes{planes_of(seen)};
+  for (ColorExample& e : examples)
+    planes.push_back(planes_of(see(models.get(e.object), frame, options, options.rendering)));
+  const std::vector<cv::Rect> parts = used_parts(planes);
+  check_memory(parts, planes.size());
+
+  double foreground = 0;
+  for (const PatchImage& image : planes[0]) foreground += cv::countNonZero(image.mask);
+  const SynthesisOptions engine = synthesis_for(options, std::max(options.rendering.width, options.rendering.height),
+                                                foreground / double(seen.size()));
+  const int gap = engine.patch_sizes.empty() ? 1 : engine.patch_sizes.front() / 2 + 1;
+  result.sheet = ViewSheet(seen, parts, std::max(1, int(engine.patch_sizes.size())), gap, options.threads);
+  PatchImage sheet = result.sheet.assemble(planes[0]);
+  for (int k : engine.synthesized) sheet.planes[k].release();
+  for (std::size_t k = 0; k < examples.size(); ++k) examples[k].image = result.sheet.assemble(planes[k + 1]);
+  planes.clear();
+  const int like = examples.front().object;
+  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options.harmonize, result);
+
+  Progress synthesis = progress.part(30, 90);
+  const SynthesisResult found = synthesize(sheet, images, engine, {}, synthesis,
+                                           [&](int level, std::vector<cv::Mat>& p) { result.sheet.agree(level, p); });
+  report_synthesis(found, sheet.mask, result);
+  for (const cv::Mat& plane : found.planes) result.planes.push_back(extend(plane, sheet.mask));
+  result.example = found.example;
+  result.oriented = faces_outwards(query, frame, options);
+  progress.stage("Colouring the surface", 90, 100);
+  color_vertices(query.mesh, models.get(like), options.threads, result);
+  result.posed = std::move(query.mesh.vertices);
+  return result;
+}
+
+BakedTexture bake_texture(const Mesh& mesh, const std::vector<Wedges>& wedges, int size, const MeshColors& colors,
+                          int threads) {
+  const TexelMap map = map_texels(wedges, size);
+  std::vector<cv::Mat> planes;
+  for (int k = 0; k < 3; ++k) planes.push_back(cv::Mat::zeros(size, size, CV_32F));
+  BakedTexture baked;
+  baked.mask = cv::Mat::zeros(size, size, CV_8U);
+  parallel_for(size, threads, [&](long begin, long end) {
+    for (int y = int(begin); y < end; ++y)
+      for (int x = 0; x < size; ++x) {
+        const std::size_t at = std::size_t(y) * size + x;
+        if (map.face[at] < 0) continue;
+        const Vec3f color = colors.at(mesh, map.face[at], map.barycentric[at]);
+        for (int k = 0; k < 3; ++k) planes[k].at<float>(y, x) = color[k];
+        baked.mask.at<uchar>(y, x) = 255;
+      }
+  });
+  baked.color = to_color(planes);
+  return baked;
+}
+
+std::vector<Color> vertex_colors(const MeshColors& colors) {
+  std::vector<cv::Mat> planes;
+  const int n = int(colors.vertex.size());
+  for (int k = 0; k < 3; ++k) {
+    planes.emplace_back(std::max(n, 1), 1, CV_32F, cv::Scalar(0));
+    for (int v = 0; v < n; ++v) planes.back().at<float>(v) = colors.vertex[v][k];
+  }
+  const cv::Mat bgr = to_color(planes);
+  std::vector<Color> out(std::size_t(n), Color{});
+  for (int v = 0; v < n; ++v) {
+    const cv::Vec3b& c = bgr.at<cv::Vec3b>(v);
+    out[v] = {c[2], c[1], c[0], 255};
+  }
+  return out;
+}
+
+}  // namespace parts

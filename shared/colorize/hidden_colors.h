@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "mappings/class_models.h"
+
+namespace parts {
+
+/// Completes the colours of a mesh's vertices. A hidden vertex takes the colour
+/// of a model's surface where that is closest, and a correction that continues
+/// the difference between mesh and model at the vertices around, harmonically.
+/// @param posed   the mesh, its vertices in the model's world space
+/// @param known   per vertex
+/// @param color   Y, Cb and Cr of each vertex, 0..1; those not known are found
+void complete_colors(const Mesh& posed, const std::vector<char>& known, const ClassModel& model,
+                     std::vector<Eigen::Vector3f>& color, int threads);
+
+}  // namespace parts
