@@ -60,28 +60,33 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const bool add_mesh = inputs.flag("AddMesh");
   if (image_file.empty() && usage_file.empty() && !add_mesh)
     throw UserError("Nothing is asked for; name an ImageFile or a UsageFile, or switch AddMesh on.");
-  refuse_inputs(inputs, {"ImageFile", "UsageFile"}, {depth_file, database});
+  for (const std::string& file : {image_file, usage_file}) OutputFiles::check_image(file);
 
   progress.stage("Reading", 0, 5);
   const cv::Mat depth = read_depth(depth_file);
   Progress opening = progress.part(5, 20), coloring = progress.part(20, 90), meshing = progress.part(90, 98);
   const auto source = open_examples(database, {View{}}, rendering(depth.size()), opening);
+  std::vector<std::string> kept = source->files();
+  kept.insert(kept.end(), {depth_file, database});
+  refuse_inputs(inputs, {"ImageFile", "UsageFile"}, kept);
   ColorizeOptions options;
   read_synthesis(inputs, source->preset(), slug, options);
   const ColorizeResult result = colorize_depth(depth, *source, options, coloring);
 
+  OutputFiles files;
+  files.image(with_alpha(result.color, result.mask), image_file);
+  files.image(usage_picture(result.example), usage_file);
   Outcome outcome;
   if (add_mesh) {
     const Camera camera = raster_camera(depth.size(), 1, 0);
     DepthMesh made = depth_to_mesh(depth, {}, camera, {}, meshing);
     const std::string& beside = image_file.empty() ? depth_file : image_file;
-    made.mesh.textures = {write_texture(result.color, result.mask, {"", beside, {depth_file, database}})};
+    made.mesh.textures = {write_texture(result.color, result.mask, {"", beside, kept})};
     log_value(progress, "texture", made.mesh.textures[0]);
     outcome.layers.push_back({"Colorized", std::move(made.mesh), true, camera});
     outcome.current = 0;
   }
-  if (!image_file.empty()) write_image(with_alpha(result.color, result.mask), image_file);
-  if (!usage_file.empty()) write_image(usage_picture(result.example), usage_file);
+  files.commit();
   log_report(result, progress);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return outcome;

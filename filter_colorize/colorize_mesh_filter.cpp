@@ -75,12 +75,12 @@ void check_texture_size(int size) {
   const double needed = kBytes * size * size;
   if (needed > available_memory())
     throw UserError("A texture of " + std::to_string(size) + " x " + std::to_string(size) + " needs about " +
-                    std::to_string(int(needed / 1e6)) + " MB to make and " + std::to_string(int(available_memory() / 1e6)) +
-                    " MB are free; choose a smaller TextureSize.");
+                    std::to_string(int(needed / 1e6)) + " MB to make and " +
+                    std::to_string(int(available_memory() / 1e6)) + " MB are free; choose a smaller TextureSize.");
 }
 
 /// The mesh with a texture: its picture, its file.
-void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, std::vector<std::string> kept,
+void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, const std::vector<std::string>& kept,
                  Progress& progress) {
   const int size = inputs.integer("TextureSize");
   const std::string flaw = texture_coordinates_flaw(mesh, size);
@@ -90,7 +90,6 @@ void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, std
     log_value(progress, "charts", atlas.charts);
     mesh.wedges = std::move(atlas.wedges);
   }
-  kept.insert(kept.end(), mesh.textures.begin(), mesh.textures.end());
   const BakedTexture baked = bake_texture(mesh, mesh.wedges, size, colors, 0);
   std::string name = std::filesystem::path(inputs.layer("Mesh").name()).filename().string();
   if (name.empty()) name = "colorized";
@@ -103,7 +102,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::string database = inputs.text("Database"), usage_file = inputs.text("UsageFile");
   if (database.empty()) throw UserError("No database is named; choose a project or a folder of coloured models.");
-  refuse_inputs(inputs, {"TextureFile", "UsageFile"}, {database});
+  OutputFiles::check_image(inputs.text("TextureFile"));
+  OutputFiles::check_image(usage_file);
   if (inputs.choice("Target") == kTexture) check_texture_size(inputs.integer("TextureSize"));
   Mesh mesh = surface_of(inputs.layer("Mesh"));
   Progress opening = progress.part(0, 20), coloring = progress.part(20, 90);
@@ -111,17 +111,21 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const ModelDatabase listed(database, opening);
   const ColorizeMeshOptions options = options_of(inputs, read_class_preset(listed.path()));
   const auto models = recent_models(listed, options.views, options.rendering, opening);
-  refuse_inputs(inputs, {"TextureFile", "UsageFile"}, models->files());
+  std::vector<std::string> kept = models->files();
+  kept.insert(kept.end(), mesh.textures.begin(), mesh.textures.end());
+  refuse_inputs(inputs, {"TextureFile", "UsageFile"}, kept);
 
   const MeshColors colors = colorize_mesh(mesh, *models, options, coloring);
   progress.stage("Writing", 90, 100);
+  OutputFiles files;
+  if (!usage_file.empty()) files.image(usage_picture(colors.example), usage_file);
   if (inputs.choice("Target") == kTexture) {
-    add_texture(mesh, colors, inputs, models->files(), progress);
+    add_texture(mesh, colors, inputs, kept, progress);
   } else {
     mesh.vertex_color = vertex_colors(colors);
     mesh.wedges.clear(), mesh.textures.clear(), mesh.face_color.clear();
   }
-  if (!usage_file.empty()) write_image(usage_picture(colors.example), usage_file);
+  files.commit();
   log_report(colors, progress);
   log_value(progress, "seen", colors.seen);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

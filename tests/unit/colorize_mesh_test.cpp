@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "colorize/colorize_mesh.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "geometry/error.h"
+#include "geometry/mesh_io.h"
+#include "support/shapes.h"
+
+namespace parts::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Red above, green below, blue in front: by direction from the middle.
+Color paint(const Vec3& p, double shade) {
+  const Vec3 n = p.normalized();
+  const auto tone = [&](double t) { return std::uint8_t(std::clamp(255 * shade * t, 0., 255.)); };
+  return {tone(0.5 + 0.5 * n.y()), tone(0.5 - 0.5 * n.y()), tone(0.5 + 0.5 * n.z()), 255};
+}
+
+/// An egg with a nose, so that its pose shows.
+Mesh egg(double nose) {
+  Mesh m = sphere(Vec3::Zero(), 1, 5);
+  for (Vec3& v : m.vertices) {
+    const double bump = std::exp(-8 * (v - Vec3(0, 0.2, 1)).squaredNorm());
+    v = Vec3(0.8 * v.x(), 1.1 * v.y(), v.z() + nose * bump);
+  }
+  return m;
+}
+Mesh painted(Mesh m, double shade = 1) {
+  for (const Vec3& v : m.vertices) m.vertex_color.push_back(paint(v, shade));
+  return m;
+}
+
+class ColorizeMeshTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("colorize_mesh_test_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+    options_.views = parse_views("0,0; 90,0; 180,0; -90,0; 0,80; 0,-80");
+    options_.rendering.width = 60, options_.rendering.height = 80;
+    options_.rendering.ambient = 1, options_.rendering.back = false;
+    options_.patch_sizes = {5, 7};
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void model(const char* name, const Mesh& mesh) const { write_mesh(mesh, (folder_ / name).string()); }
+  MeshColors colored(const Mesh& mesh) {
+    Progress silent;
+    ClassModels models(ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
+    return colorize_mesh(mesh, models, options_, silent);
+  }
+  static double mean_error(const Mesh& mesh, const std::vector<Color>& colors) {
+    double sum = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      for (int k = 0; k < 3; ++k) sum += std::abs(colors[v][k] - paint(mesh.vertices[v], 1)[k]);
+    return sum / (3.0 * mesh.vertex_count());
+  }
+
+  fs::path folder_;
+  ColorizeMeshOptions options_;
+};
+
+TEST_F(ColorizeMeshTest, ColorsComeToTheirPlacesAllAround) {
+  model("a.ply", painted(egg(0.3)));
+  model("b.ply", painted(egg(0.5)));
+  const Mesh query = egg(0.4);
+  const MeshColors colors = colored(query);
+  EXPECT_LT(mean_error(query, vertex_colors(colors)), 8);
+  EXPECT_GT(colors.seen, 0.95);
+  EXPECT_EQ(colors.used.size(), 2u);
+  for (const auto& level : colors.objective)
+    for (std::size_t i = 1; i < level.size(); ++i) EXPECT_GE(level[i], level[i - 1] - 1e-6);
+}
+
+TEST_F(ColorizeMeshTest, AnotherUnitPlaceAndStance) {
+  model("a.ply", painted(egg(0.3)));
+  Mesh query = egg(0.4);
+  for (Vec3& v : query.vertices) v = 1000 * Vec3(v.x(), -v.z(), v.y()) + Vec3(5, 7, 9);  // lying on its back
+  options_.up = {0, 0, 1}, options_.front = {0, -1, 0};
+  EXPECT_LT(mean_error(egg(0.4), vertex_colors(colored(query))), 8);
+}
+
+TEST_F(ColorizeMeshTest, HiddenPartsFollowTheModel) {
+  model("a.ply", painted(together({egg(0.3), moved(egg(0), Eigen::Affine3d(Eigen::Scaling(0.5)))})));
+  const Mesh inner = moved(egg(0), Eigen::Affine3d(Eigen::Scaling(0.55)));
+  const Mesh query = together({egg(0.4), inner});
+  const MeshColors colors = colored(query);
+  EXPECT_LT(colors.seen, 0.85);
+  EXPECT_LT(mean_error(query, vertex_colors(colors)), 8);
+}
+
+TEST_F(ColorizeMeshTest, TheTextureShowsTheSameAsTheVertices) {
+  model("a.ply", painted(egg(0.3)));
+  const Mesh query = egg(0.4);
+  const MeshColors colors = colored(query);
+  const Atlas atlas = make_atlas(query, 256);
+  const BakedTexture baked = bake_texture(query, atlas.wedges, 256, colors, 0);
+  const std::vector<Color> vertices = vertex_colors(colors);
+  double sum = 0;
+  for (int f = 0; f < query.face_count(); ++f) {
+    const Eigen::Vector2f uv = (atlas.wedges[f].uv[0] + atlas.wedges[f].uv[1] + atlas.wedges[f].uv[2]) / 3;
+    const cv::Point at(int(uv.x() * 256), int((1 - uv.y()) * 256));
+    ASSERT_TRUE(baked.mask.at<uchar>(at));
+    for (int k = 0; k < 3; ++k) {
+      double mean = 0;
+      for (int v : query.faces[f]) mean += vertices[v][k] / 3.;
+      sum += std::abs(baked.color.at<cv::Vec3b>(at)[2 - k] - mean);
+    }
+  }
+  EXPECT_LT(sum / (3.0 * query.face_count()), 4);
+}
+
+TEST_F(ColorizeMeshTest, InsideOutAndAnyNumberOfThreads) {
+  model("a.ply", painted(egg(0.3)));
+  Mesh query = egg(0.4);
+  options_.threads = 1;
+  const std::vector<Color> one = vertex_colors(colored(query));
+  options_.threads = 5;
+  EXPECT_EQ(one, vertex_colors(colored(query)));
+  for (Triangle& f : query.faces) std::swap(f[1], f[2]);
+  const MeshColors turned = colored(query);
+  EXPECT_FALSE(turned.oriented);
+  EXPECT_LT(mean_error(query, vertex_colors(turned)), 8);
+}
+
+TEST_F(ColorizeMeshTest, LevelsWithoutSearchAddDetail) {
+  model("a.ply", painted(egg(0.3)));
+  options_.rendering.width = 240, options_.rendering.height = 320;  // searched at half of it
+  const Mesh query = egg(0.4);
+  EXPECT_LT(mean_error(query, vertex_colors(colored(query))), 8);
+}
+
+TEST_F(ColorizeMeshTest, WhatCannotBeColored) {
+  model("grey.ply", egg(0.3));
+  EXPECT_THROW(colored(egg(0.4)), UserError);  // no model has colours
+  model("a.ply", painted(egg(0.3)));
+  EXPECT_NO_THROW(colored(egg(0.4)));
+  EXPECT_THROW(colored(Mesh{}), UserError);
+  Mesh point;
+  point.vertices.assign(3, Vec3(1, 2, 3));
+  point.faces = {{0, 1, 2}};
+  EXPECT_THROW(colored(point), UserError);
+  options_.choose = {"nobody"};
+  EXPECT_THROW(colored(egg(0.4)), UserError);
+  options_.choose = {"grey"};
+  EXPECT_THROW(colored(egg(0.4)), UserError);
+}
+
+TEST(ViewSheet, PixelsOfOnePointAgree) {
+  const Mesh m = sphere(Vec3::Zero(), 1, 4);
+  ClassModel model{"m", m, {}, Vec3::Zero(), 2.4};
+  ExampleOptions rendering;
+  rendering.width = rendering.height = 64, rendering.back = false;
+  std::vector<Example> views;
+  for (double yaw : {0., 40.}) views.push_back(render_example(model, {yaw, 0}, 60, rendering));
+  const ViewSheet sheet(views, {{0, 0, 64, 64}, {0, 0, 64, 64}}, 2, 2, 1);
+  cv::Mat plane(sheet.size(), CV_32F, cv::Scalar(0));
+  plane(cv::Rect(sheet.tiles()[1].place, cv::Size(64, 64))).setTo(1);
+  std::vector<cv::Mat> planes{plane};
+  sheet.agree(0, planes);
+  const Vec3 between(std::sin(20 * EIGEN_PI / 180), 0, std::cos(20 * EIGEN_PI / 180));
+  float value = -1;
+  EXPECT_GT(sheet.look({plane}, 0, between, between, &value), 1);  // both see it, neither quite from the front
+  EXPECT_NEAR(value, 0.5, 0.05);
+  for (const auto& tile : sheet.tiles()) {
+    const Vec3 at = tile.camera.project(between);
+    EXPECT_NEAR(planes[0].at<float>(int(at.y()) + tile.place.y, int(at.x()) + tile.place.x), 0.5, 0.06);
+  }
+  value = -1;
+  EXPECT_EQ(sheet.look({plane}, 0, Vec3(0, 0, -1), Vec3(0, 0, -1), &value), 0);
+  EXPECT_EQ(value, -1);
+}
+
+}  // namespace
+}  // namespace parts::test
