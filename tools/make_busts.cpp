@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 const char kUsage[] =
     "usage: make_busts FOLDER [COUNT] [options]\n"
-    "Writes COUNT (12) busts, FOLDER/bust_00.obj with .mtl and .png and so on, and\n"
+    "Writes COUNT (12) busts, FOLDER/bust_00.ply with .png and so on, and\n"
     "the MeshLab project FOLDER/busts.mlp with all of them. They stand along y, face\n"
     "+z, and their heads are about 1 high.\n"
     "  --seed S            the first bust's seed (1); the next has the next one\n"
@@ -110,7 +110,7 @@ void write_class(const Arguments& a) {
   MlpProject project;
   for (int i = 0; i < a.count; ++i) {
     char name[32];
-    std::snprintf(name, sizeof name, "bust_%02d.obj", i);
+    std::snprintf(name, sizeof name, "bust_%02d.ply", i);
     const BustShape shape = random_bust(a.seed + unsigned(i));
     const Mesh mesh = bust_mesh(shape, "", a.cells);
     const std::string file = (fs::path(a.folder) / name).string();

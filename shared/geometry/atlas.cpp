@@ -315,7 +315,7 @@ std::string texture_coordinates_flaw(const Mesh& mesh, int size) {
     area += a;
     if (std::abs(cross(t[1] - t[0], t[2] - t[0])) < 1e-6) lost += a;
   }
-  if (lost > 0.001 * area) return "degenerate";
+  if (lost > 0.01 * area) return "degenerate";
   const TexelMap map = map_texels(mesh.wedges, size);
   const long covered = std::count_if(map.face.begin(), map.face.end(), [](int f) { return f >= 0; });
   return double(map.conflicts) > 0.01 * double(covered) ? "overlapping" : "";

@@ -25,7 +25,7 @@ class ColorizeDepth(lib.MeshCase):
         cls.depth = first
         for file in busts.glob("bust_00*"):  # the query is no example
             file.unlink()
-        cls.models = busts / "bust_01.obj"
+        cls.models = busts / "bust_01.ply"
 
     def colored(self, saved=None, **values):
         values = dict(dict(Depth=self.depth, Database=self.models, PatchSizes="5,7"), **values)
@@ -54,7 +54,7 @@ class ColorizeDepth(lib.MeshCase):
 
     def test_one_example_by_name(self):
         result = self.colored(Choose="bust_03")
-        self.assertEqual(result.figures()["example"], "bust_03.obj 1")
+        self.assertEqual(result.figures()["example"], "bust_03.ply 1")
 
     def test_stored_examples_give_back_what_they_hold(self):
         """The query itself among the examples: its own colours."""

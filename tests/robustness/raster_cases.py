@@ -146,45 +146,6 @@ def build_mappings(case, folder):
     yield row("a thousand views", OK, Views=";".join(f"{i % 360},{i // 36}" for i in range(1000)), Width=8, Height=8)
 
 
-def colorize_depth(case, folder):
-    models = folder / "examples"
-    models.mkdir()
-    for i in range(3):
-        shapes.write_ply(models / f"m{i}.ply", shapes.sphere().scaled(1 + i / 10))
-    front, _ = rasters.sphere()
-    plain = dict(Depth=rasters.save_tif(folder / "query.tif", front), Database=models / "m0.ply", PatchSizes="5",
-                 ImageFile=folder / "colors.png")
-
-    def row(name, allowed=FINE, **values):
-        return case("colorize_depth", name, [], [template("colorize_depth", **dict(plain, **values))], allowed, False,
-                    "made")
-
-    def depth(name, array, allowed=FINE):
-        return row(name, allowed, Depth=rasters.save_tif(folder / (name.replace(" ", "_") + ".tif"), array))
-
-    yield row("models without colours", OK)
-    yield row("one level of each size", OK, PatchSizes="3,5,7,9")
-    yield row("more examples than there are", OK, Examples=1000)
-    yield row("all weights 0", FINE, WeightDepth=0, WeightHighFrequency=0, WeightY=0, WeightCb=0, WeightCr=0,
-              WeightPosition=0)
-    for name, values in (("an even patch", dict(PatchSizes="4")), ("a patch larger than the image", dict(PatchSizes="99")),
-                         ("patches that are none", dict(PatchSizes="5;x")), ("no patch", dict(PatchSizes="")),
-                         ("no example of that name", dict(Choose="nobody")), ("Examples 0", dict(Examples=0)),
-                         ("Weight NaN", dict(WeightY="nan")), ("a negative weight", dict(WeightY=-1)),
-                         ("no depth", dict(Depth="")), ("no database", dict(Database="")),
-                         ("a database that is not there", dict(Database=folder / "nowhere.mlp")),
-                         ("the depth as database", dict(Database=plain["Depth"])),
-                         ("the image over the depth", dict(ImageFile=plain["Depth"])),
-                         ("the image in a folder that is not there", dict(ImageFile=folder / "no" / "c.png")),
-                         ("nothing asked for", dict(ImageFile="", AddMesh=False))):
-        yield row(name, SENTENCE, **values)
-    yield depth("colors of nothing", np.zeros((80, 60)), SENTENCE)
-    yield depth("colors of one pixel", np.eye(1), SENTENCE)
-    yield depth("colors of a plane", np.full((80, 60), 5.0))
-    yield depth("colors of a line", np.where(np.arange(60)[None, :] == 30, 5.0, np.zeros((80, 1))))
-    yield depth("colors of noise", np.random.default_rng(1).random((80, 60)) + 1)
-
-
 def all_cases(case):
-    for part in (depth_to_mesh, build_mappings, colorize_depth):
+    for part in (depth_to_mesh, build_mappings):
         yield from part(case, lib.work_folder())

@@ -23,6 +23,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "mlx"))
 import depth_cases  # noqa: E402
 import lib  # noqa: E402
+import color_cases  # noqa: E402
 import nasty  # noqa: E402
 import mend_cases  # noqa: E402
 import raster_cases  # noqa: E402
@@ -224,6 +225,7 @@ def all_cases():
     for part in (documents, damaged, sizes, placements, constraints, volumes, numbers):
         yield from part()
     yield from raster_cases.all_cases(Case)
+    yield from color_cases.all_cases(Case)
     yield from depth_cases.all_cases(Case)
     yield from mend_cases.all_cases(Case)
 

@@ -25,7 +25,7 @@ Color paint(const Vec3& p, double shade) {
 
 /// An egg with a nose, so that its pose shows.
 Mesh egg(double nose) {
-  Mesh m = sphere(Vec3::Zero(), 1, 5);
+  Mesh m = sphere(Vec3::Zero(), 1, 4);
   for (Vec3& v : m.vertices) {
     const double bump = std::exp(-8 * (v - Vec3(0, 0.2, 1)).squaredNorm());
     v = Vec3(0.8 * v.x(), 1.1 * v.y(), v.z() + nose * bump);
