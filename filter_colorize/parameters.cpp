@@ -77,6 +77,7 @@ void log_report(const ColorizeReport& r, Progress& progress) {
     line << r.used[k] << " " << r.shares[k];
     log_value(progress, "example", line.str());
   }
+  if (r.left_out > 0) log_value(progress, "left_out", r.left_out);
   for (const std::string& label : r.harmonized) log_value(progress, "harmonized", label);
   for (std::size_t level = 0; level < r.objective.size(); ++level)
     for (double value : r.objective[level]) log_value(progress, "plausibility", value);

@@ -2,6 +2,7 @@
 #include "colorize/color_examples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
@@ -34,12 +35,6 @@ double relief_difference(const PatchImage& a, const PatchImage& b) {
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
-}
-
-cv::Vec3d mean_color(const PatchImage& image) {
-  cv::Vec3d mean;
-  for (int k = kYPlane; k <= kCrPlane; ++k) mean[k - kYPlane] = cv::mean(image.planes[k], image.mask)[0];
-  return mean;
 }
 
 }  // namespace
@@ -92,9 +87,68 @@ std::vector<int> choosable(const std::vector<std::string>& names, const std::vec
   return objects;
 }
 
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options) {
+namespace {
+
+/// What each pixel of an image would have to be changed by to be as the pixel
+/// at the same place, seen from the centroids, of another; one list a colour plane.
+std::array<std::vector<double>, 3> steps_between(const PatchImage& image, const PatchImage& like) {
+  const cv::Point2d shift = centroid(like.mask) - centroid(image.mask);
+  const cv::Rect frame({0, 0}, like.mask.size());
+  std::array<std::vector<double>, 3> steps;
+  for (int y = 0; y < image.mask.rows; ++y)
+    for (int x = 0; x < image.mask.cols; ++x) {
+      const cv::Point q(cvRound(x + shift.x), cvRound(y + shift.y));
+      if (!image.mask.at<uchar>(y, x) || !frame.contains(q) || !like.mask.at<uchar>(q)) continue;
+      for (int k = kYPlane; k <= kCrPlane; ++k)
+        steps[k - kYPlane].push_back(like.planes[k].at<float>(q) - image.planes[k].at<float>(y, x));
+    }
+  return steps;
+}
+
+/// What differs all over between two images; 0 where nothing does. What differs
+/// here and there (a red coat and a blue one) is no tint.
+cv::Vec3d tint(const std::array<std::vector<double>, 3>& steps) {
+  cv::Vec3d all;
+  for (int k = 0; k < 3; ++k) {
+    if (steps[k].empty()) continue;
+    std::vector<double> rest = steps[k];
+    const double step = median(rest);
+    for (double& s : rest) s = std::abs(s - step);
+    const double spread = median(std::move(rest));
+    if (std::abs(step) >= (k == 0 ? 0.04 : 0.012) && spread <= 0.7 * std::abs(step)) all[k] = step;
+  }
+  return all;
+}
+
+}  // namespace
+
+bool harmonize(PatchImage& image, const PatchImage& like) {
+  const cv::Vec3d step = tint(steps_between(image, like));
+  for (int k = 0; k < 3; ++k)
+    if (step[k] != 0) image.planes[kYPlane + k] += step[k];
+  return step != cv::Vec3d();
+}
+
+double discord(const PatchImage& image, const PatchImage& like, bool harmonized) {
+  constexpr double kOther = 0.1;  // of Y or Cb or Cr: as skin differs from hair or a shirt
+  const auto steps = steps_between(image, like);
+  const cv::Vec3d taken = harmonized ? tint(steps) : cv::Vec3d();
+  if (steps[0].empty()) return 1;
+  long other = 0;
+  for (std::size_t i = 0; i < steps[0].size(); ++i) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += std::pow(steps[k][i] - taken[k], 2);
+    other += square > kOther * kOther;
+  }
+  return double(other) / double(steps[0].size());
+}
+
+void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options,
+                     ColorizeReport& report) {
   if (options.examples < 1) throw UserError("Examples must be 1 or more; 1 morphs one image-map onto the shape.");
-  constexpr double kColorStep = 0.08;  // counts as much as the median difference in shape
+  constexpr double kPatchwork = 0.3;     // discord beyond which one would see where colours come from
+  constexpr double kDiscord = 0.2;       // counts as much as the median difference in shape; less hardly matters
+  constexpr std::size_t kCompared = 32;  // of the most similar ones
   for (ColorExample& c : all) c.difference = relief_difference(query, c.image);
   std::stable_sort(all.begin(), all.end(),
                    [](const ColorExample& a, const ColorExample& b) { return a.difference < b.difference; });
@@ -104,35 +158,19 @@ void select_examples(std::vector<ColorExample>& all, const PatchImage& query, co
     std::swap(all[0], all[engine() % unsigned((all.size() + 1) / 2)]);
   }
   const double typical = std::max(all[all.size() / 2].difference, 1e-12);
-  const cv::Vec3d like = mean_color(all[0].image);
-  const auto cost = [&](const ColorExample& c) {
-    return c.difference / typical + std::pow(cv::norm(mean_color(c.image) - like) / kColorStep, 2);
-  };
-  std::stable_sort(all.begin() + 1, all.end(),
-                   [&](const ColorExample& a, const ColorExample& b) { return cost(a) < cost(b); });
-  all.resize(std::min(all.size(), std::size_t(options.examples)));
-}
-
-bool harmonize(PatchImage& image, const PatchImage& like) {
-  const cv::Point2d shift = centroid(like.mask) - centroid(image.mask);
-  bool changed = false;
-  for (int k = kYPlane; k <= kCrPlane; ++k) {
-    std::vector<double> steps;
-    for (int y = 0; y < image.mask.rows; ++y)
-      for (int x = 0; x < image.mask.cols; ++x) {
-        const cv::Point q(cvRound(x + shift.x), cvRound(y + shift.y));
-        if (!image.mask.at<uchar>(y, x) || !cv::Rect(0, 0, like.mask.cols, like.mask.rows).contains(q)) continue;
-        if (like.mask.at<uchar>(q)) steps.push_back(like.planes[k].at<float>(q) - image.planes[k].at<float>(y, x));
-      }
-    if (steps.empty()) continue;
-    const double step = median(steps);
-    for (double& s : steps) s = std::abs(s - step);
-    const double spread = median(std::move(steps));
-    if (std::abs(step) < (k == kYPlane ? 0.04 : 0.012) || spread > 0.7 * std::abs(step)) continue;
-    image.planes[k] += step;
-    changed = true;
+  all.resize(std::min(all.size(), std::max(kCompared, std::size_t(options.examples))));
+  std::vector<std::pair<double, std::size_t>> others;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const double d = discord(all[i].image, all[0].image, options.harmonize);
+    if (d < kPatchwork) others.emplace_back(all[i].difference / typical + std::pow(d / kDiscord, 4), i);
   }
-  return changed;
+  std::sort(others.begin(), others.end());
+  std::vector<ColorExample> kept;
+  kept.push_back(std::move(all[0]));
+  for (const auto& [cost, i] : others)
+    if (int(kept.size()) < options.examples) kept.push_back(std::move(all[i]));
+  report.left_out = std::min(options.examples, int(all.size())) - int(kept.size());
+  all = std::move(kept);
 }
 
 SynthesisOptions color_synthesis(const ColorizeOptions& options) {

@@ -30,9 +30,10 @@ struct ColorizeOptions {
 
 /// How a colouring went.
 struct ColorizeReport {
-  std::vector<std::string> used;               ///< labels of the examples, the most similar first
-  std::vector<double> shares;                  ///< of the foreground that each of them gave
-  std::vector<std::string> harmonized;         ///< labels of those whose colours were changed
+  std::vector<std::string> used;        ///< labels of the examples, the most similar first
+  std::vector<double> shares;           ///< of the foreground that each of them gave
+  std::vector<std::string> harmonized;  ///< labels of those whose colours were changed
+  int left_out = 0;  ///< examples fewer than asked for, as the others' colours do not go with the first one's
   std::vector<std::vector<double>> objective;  ///< per level and iteration: mean log Sim (eq. 3)
   bool aligned = false;                        ///< the query was moved and scaled into the examples' frame
   double patch_distance = 0;                   ///< root mean square difference of patches, in standard deviations
@@ -60,16 +61,23 @@ double relief_spread(const PatchImage& image);
 /// @throws UserError  a label that no object has
 std::vector<int> choosable(const std::vector<std::string>& names, const std::vector<std::string>& labels);
 
-/// Sorts by similarity of shape and keeps options.examples of them: the most
-/// similar one, and others that go with its colours too. With a seed the first
-/// is drawn among the better half. Those chosen by name are all kept.
-/// @throws UserError  options.examples is below 1
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options);
-
 /// Takes off an example what makes it differ from another all over: exposure or
 /// tint. What differs here and there (a red coat and a blue one) is no tint.
 /// @return whether there was such a difference
 bool harmonize(PatchImage& image, const PatchImage& like);
+
+/// The share of the surface where two examples have other colours: put together
+/// they would give patchwork.
+/// @param harmonized  after taking off what differs all over
+double discord(const PatchImage& image, const PatchImage& like, bool harmonized);
+
+/// Sorts by similarity of shape and keeps options.examples of them: the most
+/// similar one, and others that go with its colours; fewer where too few do,
+/// as the result would be patchwork (thesis Fig. 31). With a seed the first is
+/// drawn among the better half. Those chosen by name are all kept.
+/// @throws UserError  options.examples is below 1
+void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options,
+                     ColorizeReport& report);
 
 /// The engine's channels and weights.
 SynthesisOptions color_synthesis(const ColorizeOptions& options);

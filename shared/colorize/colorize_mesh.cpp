@@ -110,7 +110,7 @@ double frame_for(const ClassModel& query, const ClassModels& models, const Color
 
 /// Compares the query with every model by small views, and keeps those that give their colours.
 std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, const ColorizeMeshOptions& options,
-                                 double frame, Progress& progress) {
+                                 double frame, ColorizeReport& report, Progress& progress) {
   ExampleOptions small = options.rendering;
   const double shrink = std::min(1.0, double(kComparison) / std::max(small.width, small.height));
   small.width = std::max(8, int(small.width * shrink)), small.height = std::max(8, int(small.height * shrink));
@@ -130,7 +130,7 @@ std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, c
   }
   if (all.empty())
     throw UserError("No model of the database has colours; give models with textures or vertex colours.");
-  select_examples(all, seen, options);
+  select_examples(all, seen, options, report);
   return all;
 }
 
@@ -250,14 +250,14 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
   ClassModel query = pose(mesh, models, options);
   double frame = frame_for(query, models, options);
   progress.stage("Comparing with the models", 0, 20);
-  std::vector<ColorExample> examples = choose(query, models, options, frame, progress);
+  std::vector<ColorExample> examples = choose(query, models, options, frame, result, progress);
   if (options.align) {
     Progress aligning = progress.part(20, 25);
     result.aligned = align(query, models.get(examples.front().object), options.threads, aligning);
     if (result.aligned) {
       frame = frame_for(query, models, options);
       progress.stage("Comparing with the models", 25, 30);
-      examples = choose(query, models, options, frame, progress);
+      examples = choose(query, models, options, frame, result, progress);
     }
   }
   const std::vector<Example> seen = see(query, frame, options, options.rendering);

@@ -7,6 +7,7 @@
 
 #include "database/closest_face.h"
 #include "geometry/parallel.h"
+#include "geometry/prepare.h"
 #include "render/surface_color.h"
 
 namespace parts {
@@ -42,19 +43,21 @@ std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used
 /// Continues values from the known vertices over the others along edges;
 /// vertices that no known one is joined to get a share of 0.
 void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std::vector<Vec3f>& value) {
-  constexpr double kPull = 1e-3;  // towards 0, so that a solution exists everywhere
+  constexpr double kPull = 1e-3;                             // towards 0, so that a solution exists everywhere
+  const std::vector<int> place = first_at_same_place(mesh);  // corners of their own are one place
   std::vector<int> row(mesh.vertices.size(), -1);
   int rows = 0;
   for (const Triangle& f : mesh.faces)
     for (int v : f)
-      if (!known[v] && row[v] < 0) row[v] = rows++;
+      if (!known[place[v]] && row[place[v]] < 0) row[place[v]] = rows++;
   if (rows == 0) return;
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> degree(std::size_t(rows), kPull);
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(rows, 3);
   for (const Triangle& f : mesh.faces)
     for (int k = 0; k < 3; ++k) {
-      for (const auto& [i, j] : {std::pair(f[k], f[(k + 1) % 3]), std::pair(f[(k + 1) % 3], f[k])}) {
+      const int a = place[f[k]], b = place[f[(k + 1) % 3]];
+      for (const auto& [i, j] : {std::pair(a, b), std::pair(b, a)}) {
         if (i == j || row[i] < 0) continue;
         degree[row[i]] += 1;
         if (row[j] >= 0)
@@ -71,7 +74,7 @@ void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std
   solver.compute(laplacian);
   const Eigen::MatrixX3d solution = solver.solve(right);
   for (std::size_t v = 0; v < value.size(); ++v)
-    if (row[v] >= 0) value[v] = solution.row(row[v]).transpose().cast<float>();
+    if (!known[v] && row[place[v]] >= 0) value[v] = solution.row(row[place[v]]).transpose().cast<float>();
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/edges.h"
 #include "geometry/error.h"
-#include "geometry/topology.h"
+#include "geometry/prepare.h"
 
 namespace parts {
 namespace {
@@ -103,7 +104,8 @@ namespace {
 /// The surface's faces with what the unfolding asks of them.
 class Unfolding {
  public:
-  explicit Unfolding(const Mesh& mesh) : mesh_(mesh), mate_(edge_map(mesh).mate) {
+  explicit Unfolding(const Mesh& mesh) : mesh_(mesh) {
+    find_neighbours();
     normal_.resize(mesh.faces.size());
     area_.resize(mesh.faces.size());
     for (int f = 0; f < mesh.face_count(); ++f) {
@@ -148,9 +150,33 @@ class Unfolding {
   static Vec3 direction(int label) { return Vec3::Unit(label / 2) * (label % 2 ? -1 : 1); }
   template <class Visit>
   void each_neighbour(int f, const Visit& visit) const {
-    for (int k = 0; k < 3; ++k)
-      if (const int mate = mate_[3 * f + k]; mate >= 0)
-        visit(mate / 3, (mesh_.corner(f, k) - mesh_.corner(f, (k + 1) % 3)).norm());
+    for (int i = first_[f]; i < first_[f + 1]; ++i) visit(neighbours_[i].face, neighbours_[i].length);
+  }
+
+  /// Faces that share an edge's two points, whatever else does: corners of their
+  /// own (as in STL files) and doubled faces do not part a surface.
+  void find_neighbours() {
+    Mesh welded;
+    welded.vertices = mesh_.vertices;
+    const std::vector<int> same = first_at_same_place(mesh_);
+    for (const Triangle& f : mesh_.faces) welded.faces.push_back({same[f[0]], same[f[1]], same[f[2]]});
+    const std::vector<HalfEdge> edges = sorted_half_edges(welded);
+    const auto each_pair = [&](const auto& visit) {
+      for_each_mesh_edge(edges, [&](auto first, auto last) {
+        for (auto e = first; e + 1 < last; ++e)
+          if (e->face != (e + 1)->face)
+            visit(e->face, (e + 1)->face, (mesh_.vertices[e->from] - mesh_.vertices[e->to]).norm());
+      });
+    };
+    first_.assign(mesh_.faces.size() + 1, 0);
+    each_pair([&](int f, int g, double) { ++first_[f + 1], ++first_[g + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    neighbours_.resize(std::size_t(first_.back()));
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    each_pair([&](int f, int g, double length) {
+      neighbours_[next[f]++] = {g, length};
+      neighbours_[next[g]++] = {f, length};
+    });
   }
 
   void label() {
@@ -231,7 +257,13 @@ class Unfolding {
   }
 
   const Mesh& mesh_;
-  std::vector<int> mate_, label_;
+  struct Neighbour {
+    int face;
+    double length;  ///< of the edge between
+  };
+  std::vector<int> first_;  ///< per face, into neighbours_
+  std::vector<Neighbour> neighbours_;
+  std::vector<int> label_;
   std::vector<Vec3> normal_;
   std::vector<double> area_;
   double total_ = 0;

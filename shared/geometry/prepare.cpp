@@ -10,9 +10,7 @@
 #include "geometry/pinches.h"
 
 namespace parts {
-namespace {
 
-/// Per vertex: the first vertex with the same position.
 std::vector<int> first_at_same_place(const Mesh& mesh) {
   const auto less = [&](int a, int b) {
     const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b];
@@ -30,6 +28,8 @@ std::vector<int> first_at_same_place(const Mesh& mesh) {
     if (mesh.vertices[order[i]] == mesh.vertices[order[i - 1]]) first[order[i]] = first[order[i - 1]];
   return first;
 }
+
+namespace {
 
 /// Flags 1 for the faces that are triangles, each set of three vertices once.
 std::vector<char> real_faces(const Mesh& mesh) {

@@ -5,6 +5,9 @@
 
 namespace parts {
 
+/// Per vertex: the first vertex with the same position, bit for bit.
+std::vector<int> first_at_same_place(const Mesh& mesh);
+
 /// A mesh made fit for cutting, and what had to be done to it.
 struct Prepared {
   Mesh mesh;

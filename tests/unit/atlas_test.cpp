@@ -67,6 +67,19 @@ TEST(Atlas, FewChartsOnARoughSurface) {
   EXPECT_LE(make_atlas(noisy_sphere(Vec3::Zero(), 1, 5, 0.05, 1), 1024).charts, 40);
 }
 
+TEST(Atlas, CornersOfTheirOwnAndDoubledFacesMakeNoCharts) {
+  const Mesh whole = sphere();
+  Mesh soup, doubled = whole;
+  for (int f = 0; f < whole.face_count(); ++f) {
+    for (int k = 0; k < 3; ++k) soup.vertices.push_back(whole.corner(f, k));
+    soup.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+  }
+  EXPECT_EQ(make_atlas(soup, 256).charts, make_atlas(whole, 256).charts);
+  doubled.faces.insert(doubled.faces.end(), whole.faces.begin(), whole.faces.end());
+  EXPECT_LE(make_atlas(doubled, 256).charts, 3 * make_atlas(whole, 256).charts);
+  expect_unfolded(doubled, 256);
+}
+
 TEST(Atlas, FacesWithoutAreaHaveNoPlace) {
   Mesh m = sphere();
   m.faces.push_back({0, 0, 1});

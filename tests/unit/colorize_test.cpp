@@ -127,6 +127,26 @@ TEST(ColorizeDepth, AnotherExposureIsHarmonizedAnotherBumpIsNot) {
   EXPECT_TRUE(r.harmonized.empty());
 }
 
+TEST(ColorizeDepth, ExamplesThatDoNotGoTogetherAreLeftOut) {
+  Example other = disc("other", {2, 0});
+  cv::Mat half = other.mask.clone();
+  half.colRange(0, kSize.width / 2).setTo(0);
+  other.image.setTo(cv::Scalar(200, 20, 20), half);  // half of it is blue
+  Discs source({disc("plain", {1, 1}), other, disc("far", {-6, 0})});
+  Progress silent;
+  const Example query = disc("q", {1, 1});
+  const ColorizeResult r = colorize_depth(query.depth, source, quick(), silent);
+  EXPECT_EQ(r.used, (std::vector<std::string>{"plain", "far"}));
+  EXPECT_EQ(r.left_out, 0);
+  Discs two({disc("plain", {1, 1}), other});
+  const ColorizeResult alone = colorize_depth(query.depth, two, quick(), silent);
+  EXPECT_EQ(alone.used, std::vector<std::string>{"plain"});
+  EXPECT_EQ(alone.left_out, 1);
+  ColorizeOptions chosen = quick();
+  chosen.choose = {"plain", "other"};
+  EXPECT_EQ(colorize_depth(query.depth, two, chosen, silent).used.size(), 2u);
+}
+
 TEST(ColorizeDepth, SameForAnyNumberOfThreadsAndSeedsVary) {
   Discs source = some_discs();
   Progress silent;
