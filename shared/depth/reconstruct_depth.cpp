@@ -82,7 +82,8 @@ cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const Example
   SynthesisOptions o = synthesis_options(options);
   // Silhouettes say more of the back than the front's detail does; and a back is
   // smooth, so it starts on a coarser level.
-  o.channels = {{0, 0.3 * options.depth, false, false}, {1, options.depth, false, false}};
+  const double known = options.depth > 0 ? 1.5 * options.depth : 0.3;
+  o.channels = {{0, known, false, false}, {1, 3.3 * known, false, false}};
   o.silhouette = 5 * options.silhouette;
   o.longest_coarsest = 32;
   return synthesize(query, examples, o, {}, progress).planes[0];

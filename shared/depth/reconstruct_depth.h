@@ -21,7 +21,7 @@ struct DepthOptions {
   std::vector<int> patch_sizes{5, 7, 9};  ///< pixels, odd, coarse to fine: one a pyramid level
   double intensity = 1;                   ///< weights, >= 0: how much each component of a patch counts (4.3.1)
   double high_frequency = 0.5;
-  double depth = 1;
+  double depth = 0.2;
   double position = 5;              ///< relative to the foreground's centroid (4.1.4); 0: anywhere
   double silhouette = 2;            ///< where a patch is foreground; also seen from the start of the search
   std::vector<View> views{{0, 0}};  ///< from where the object may be seen; where the search for the view starts

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 
 #include "synthesis/level.h"
 #include "synthesis/pyramid.h"
@@ -169,16 +170,21 @@ class Optimizer {
     return vote(plane_, matches_, examples_, setup_.layout, int(options_.synthesized.size()), options_.threads);
   }
 
-  // The coarser estimate and the voted detail.
+  // The coarser estimate and the voted detail (thesis 4.3.1). What this level's
+  // windows say of the coarse part counts as much as the coarser level: windows
+  // that were matched again with more detail know better where they lie.
   cv::Mat proposal(const Votes& votes, int s) const {
     cv::Mat mean;
     if (coarse_.empty()) {
       cv::divide(votes.value, votes.weight, mean);
       return extend(mean, votes.weight > 0);
     }
+    cv::Mat value, half;
+    cv::divide(votes.value, votes.weight, value);
+    cv::pyrDown(extend(value, votes.weight > 0), half);
     cv::divide(votes.band, votes.weight, mean);
     mean.setTo(0, votes.weight <= 0);
-    return expand(coarse_[s], mean.size()) + mean;
+    return expand(0.5 * (coarse_[s] + half), mean.size()) + mean;
   }
 
   // The M step: towards the voted planes, as far as the objective gains. For
