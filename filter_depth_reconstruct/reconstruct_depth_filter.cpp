@@ -58,6 +58,8 @@ std::vector<Parameter> parameters(const Scene&) {
       flag("UpdateViews", o.update_views, "Search the view",
            "Searches from where the object is seen, up to 40 degrees around the views given. Without it the views are "
            "used as they are."),
+      flag("UpdateLight", o.update_light, "Search the light",
+           "Renders the examples in the light that the image seems to be taken in. Not for stored examples."),
       flag("AlignQuery", o.align, "Align the image",
            "Turns and scales the image in its plane to fit the examples, where that fits clearly better."),
       flag("Segment", o.segment, "Find the foreground",
@@ -88,6 +90,7 @@ DepthOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
   o.position = class_number(inputs, preset, slug, "WeightPosition", o.position);
   o.update_objects = inputs.flag("UpdateObjects");
   o.update_views = inputs.flag("UpdateViews");
+  o.update_light = inputs.flag("UpdateLight");
   o.align = inputs.flag("AlignQuery");
   o.segment = inputs.flag("Segment");
   o.back = inputs.flag("BackSide");
@@ -171,6 +174,13 @@ void log_result(const DepthResult& r, Progress& progress) {
   log_value(progress, "view", degrees(r.view));
   log_value(progress, "view_yaw", r.view.yaw);
   log_value(progress, "view_pitch", r.view.pitch);
+  if (r.light) {
+    const Vec3 d = r.light->direction.normalized();
+    std::ostringstream light;
+    light.precision(3);
+    light << d.x() << " " << d.y() << " " << d.z() << " " << r.light->ambient;
+    log_value(progress, "light", light.str());
+  }
   log_value(progress, "scale", r.scale);
   log_value(progress, "rotation", r.rotation);
   log_value(progress, "levels", double(r.plausibility.size()));

@@ -57,6 +57,11 @@ Gallery::Gallery(ExampleSource& source, int most, unsigned seed) : source_(sourc
     }
 }
 
+void Gallery::set_light(const Light& light) {
+  source_.set_light(light);
+  small_.clear();
+}
+
 View Gallery::nearest(int k, const View& view) const {
   View best = view;
   double least = 1e30;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -45,6 +46,10 @@ class Gallery {
   /// The views that are stored of any object; empty if it can be rendered from any.
   const std::vector<View>& stored_views() const { return views_; }
   cv::Size image_size() const { return source_.image_size(); }
+
+  /// In what light they are seen; nothing where it is fixed.
+  std::optional<Light> light() const { return source_.light(); }
+  void set_light(const Light& light);
 
   /// The view of an object that is got when this one is asked for.
   View nearest(int k, const View& view) const;

@@ -9,6 +9,7 @@
 
 #include "depth/alignment.h"
 #include "depth/example_set.h"
+#include "depth/light_search.h"
 #include "depth/segment.h"
 #include "depth/trust.h"
 #include "depth/view_search.h"
@@ -116,12 +117,18 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
 
   progress.stage("Searching the view", 10, 35);
   std::vector<View> views = options.views;
+  const std::optional<Light> given_light = source.light();
+  const auto search_light = [&](const View& view) {
+    if (options.update_light && given_light) gallery.set_light(find_light(small, gallery, view, options));
+  };
+  search_light(views.front());
   std::optional<View> found;
   if (options.update_views) {
     found = find_view(small, gallery, options, progress);
     const auto near =
         std::find_if(views.begin(), views.end(), [&](const View& v) { return angle_between(v, *found) < same_view; });
     views = {near != views.end() ? *near : *found};
+    search_light(views.front());
   }
 
   progress.stage("Choosing examples", 35, 40);
@@ -143,6 +150,7 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   }
 
   progress.stage("Judging", 95, 100);
+  result.light = gallery.light();
   result.strangeness = strangeness(small, set, options);
   result.trusted = result.strangeness < untrusted;
   result.plausibility = fronts.objective;
@@ -177,6 +185,7 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   fronts.example.convertTo(example, CV_32F);
   to_query(example, placement, size, cv::INTER_NEAREST).convertTo(result.example, CV_32S);
   result.example.setTo(-1, result.mask == 0);
+  if (given_light) source.set_light(*given_light);
   result.distance = to_query(fronts.distance, placement, size, cv::INTER_NEAREST);
   return result;
 }

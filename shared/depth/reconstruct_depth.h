@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct DepthOptions {
   std::vector<View> views{{0, 0}};  ///< from where the object may be seen; where the search for the view starts
   bool update_objects = true;       ///< better examples replace those that are used least
   bool update_views = true;         ///< the view is searched for too, up to 40 degrees around the views given
+  bool update_light = true;         ///< the light is searched for too, where examples are rendered
   bool align = true;                ///< the query is turned and scaled in the image plane to fit the examples
   bool segment = false;             ///< the foreground is found as well, within the mask (6.2)
   bool back = false;                ///< the back side too, from the front (4.2)
@@ -50,6 +52,7 @@ struct DepthResult {
   Camera camera;       ///< in which the query shows what the depth says, in the database's frame; orthographic
 
   View view;                       ///< estimated: the mean of the angles in use, weighted by their patches
+  std::optional<Light> light;      ///< in which the examples were rendered; nothing where they are stored
   double scale = 1, rotation = 0;  ///< of the query to fit the examples; degrees anticlockwise
   std::vector<UsedExample> used;   ///< every example that was in use
   cv::Mat example;                 ///< 32S, the query's size: index into used; -1 = background

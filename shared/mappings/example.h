@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,12 @@
 #include "render/camera.h"
 
 namespace parts {
+
+/// One light far away, and what comes from everywhere.
+struct Light {
+  Vec3 direction{0.3, 0.4, 0.85};  ///< towards it, camera frame (x right, y up, z to the viewer)
+  double ambient = 0.35;           ///< 0..1, the share that comes from everywhere
+};
 
 /// An example of the mapping from appearance to depth (thesis 4.1): what a
 /// camera sees of one object of the class. Rasters of one size.
@@ -40,6 +47,10 @@ class ExampleSource {
   /// several threads at once.
   /// @throws UserError  its files or model cannot be read
   virtual Example get(int object, const View& view) = 0;
+  /// In what light examples are rendered; nothing where they are stored as they are.
+  virtual std::optional<Light> light() const { return {}; }
+  /// From now on.
+  virtual void set_light(const Light&) {}
   /// The files that it is made of, which no output may replace.
   virtual std::vector<std::string> files() const { return {}; }
   /// What the database says about its class.

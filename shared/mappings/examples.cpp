@@ -26,6 +26,8 @@ class RenderedExamples : public ExampleSource {
   Example get(int object, const View& view) override {
     return render_example(models_.get(object), view, models_.frame(), options_);
   }
+  std::optional<Light> light() const override { return Light{options_.light, options_.ambient}; }
+  void set_light(const Light& light) override { options_.light = light.direction, options_.ambient = light.ambient; }
   std::vector<std::string> files() const override { return models_.files(); }
   const ClassPreset& preset() const override { return preset_; }
 

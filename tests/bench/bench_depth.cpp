@@ -36,6 +36,8 @@ class Others : public ExampleSource {
   cv::Size image_size() const override { return all_.image_size(); }
   std::vector<View> views(int k) const override { return all_.views(of(k)); }
   Example get(int k, const View& view) override { return all_.get(of(k), view); }
+  std::optional<Light> light() const override { return all_.light(); }
+  void set_light(const Light& light) override { all_.set_light(light); }
   const ClassPreset& preset() const override { return all_.preset(); }
 
  private:

@@ -30,13 +30,19 @@ class Busts : public ExampleSource {
   cv::Size image_size() const override { return {options().width, options().height}; }
   std::vector<View> views(int) const override { return {}; }
   Example get(int k, const View& view) override {
-    Example e = see(kept_[k], view);
+    Example e = see(kept_[k], view, light_);
     if (!back_) e.back_depth = cv::Mat();
     return e;
   }
   const ClassPreset& preset() const override { return preset_; }
+  std::optional<Light> light() const override { return light_; }
+  void set_light(const Light& light) override { light_ = light; }
 
-  static Example see(int k, const View& view) { return render_example(model(k), view, 36, options()); }
+  static Example see(int k, const View& view, const Light& light = {}) {
+    ExampleOptions o = options();
+    o.light = light.direction, o.ambient = light.ambient;
+    return render_example(model(k), view, 36, o);
+  }
 
  private:
   static ExampleOptions options() {
@@ -61,6 +67,7 @@ class Busts : public ExampleSource {
 
   std::vector<int> kept_;
   bool back_;
+  Light light_;
   ClassPreset preset_;
 };
 
@@ -140,6 +147,25 @@ TEST(Depth, FindsTheView) {
     found += angle_between(r.view, view) < 8;
   }
   EXPECT_GE(found, 2);
+}
+
+TEST(Depth, FindsTheLight) {
+  const Vec3 left(-0.6, 0.1, 0.8);
+  double with = 0, without = 0;
+  for (int k : {1, 4}) {
+    Busts others(k);
+    const Example truth = Busts::see(k, {0, 0}, {left, 0.35});
+    DepthOptions o = known_view();
+    const DepthResult r = run({truth.image, truth.mask}, others, o);
+    EXPECT_GT(r.light->direction.normalized().dot(left.normalized()), 0.85) << r.light->direction.transpose();
+    EXPECT_EQ(others.light()->direction, Light().direction) << "the source is left as it was";
+    with += error(r.depth, truth.depth, truth.mask);
+    o.update_light = false;
+    without += error(run({truth.image, truth.mask}, others, o).depth, truth.depth, truth.mask);
+    const Example same = Busts::see(k, {0, 0});
+    EXPECT_EQ(run({same.image, same.mask}, others, known_view()).light->direction, Light().direction);
+  }
+  EXPECT_LT(with, 0.8 * without);
 }
 
 TEST(Depth, TheBackIsBehindTheFront) {

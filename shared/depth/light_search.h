@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "depth/gallery.h"
+#include "depth/reconstruct_depth.h"
+
+namespace parts {
+
+/// In what light the query was taken: of a few lights the one in which the
+/// objects, seen from the view, look most like the query, where that is clearly
+/// more than in the light they are rendered in. (Thesis 4.1.3: lighting can be
+/// resolved like the view.)
+/// @param query  small: gallery.small's scale
+/// @return gallery.light() where no other is clearly better; nothing to search
+///         where examples are stored
+Light find_light(const PatchImage& query, Gallery& gallery, const View& view, const DepthOptions& options);
+
+}  // namespace parts
