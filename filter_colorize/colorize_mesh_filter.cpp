@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -10,6 +11,7 @@
 #include "raster/raster_io.h"
 #include "raster/texture.h"
 #include "recent_models.h"
+#include "render/surface_color.h"
 #include "synthesis/usage_picture.h"
 #include "voxel/memory.h"
 
@@ -20,6 +22,7 @@ using namespace host;
 
 constexpr const char *slug = "colorize_mesh", *around = "0,0; 60,0; 120,0; 180,0; -120,0; -60,0; 0,75; 0,-75";
 enum Target { kTexture, kVertexColor };
+enum Keep { kNothing, kSelectedFaces };
 
 std::vector<Parameter> parameters(const Scene&) {
   const ColorizeMeshOptions o;
@@ -45,6 +48,8 @@ std::vector<Parameter> parameters(const Scene&) {
       integer("TextureSize", 1024, 16, 16384, "Texture size (texels)", "Rows and columns of the texture."),
   };
   add_synthesis(list);
+  list.push_back(choice("Keep", kNothing, {"Nothing", "Selected faces"}, "Keep the colours of",
+                        "Faces whose own colours stay; those of the others are found such that they go with them."));
   list.push_back(flag("Align", true, "Align",
                       "Moves the mesh onto the most similar model for the comparison, where they are nearly aligned "
                       "already. The mesh itself is not moved."));
@@ -54,7 +59,7 @@ std::vector<Parameter> parameters(const Scene&) {
   return list;
 }
 
-ColorizeMeshOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
+ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh, const ClassPreset& preset) {
   ColorizeMeshOptions o;
   const ExampleOptions fallback;
   read_synthesis(inputs, preset, slug, o);
@@ -67,6 +72,13 @@ ColorizeMeshOptions options_of(const Inputs& inputs, const ClassPreset& preset) 
   o.rendering.height = inputs.integer("Height");
   o.rendering.ambient = 1, o.rendering.back = false;
   o.align = inputs.flag("Align");
+  if (inputs.choice("Keep") == kSelectedFaces) {
+    if (std::count(mesh.face_selected.begin(), mesh.face_selected.end(), 1) == 0)
+      throw UserError("No face is selected whose colours could be kept; select some, or set Keep to Nothing.");
+    if (!has_colors(mesh, load_textures(mesh)))
+      throw UserError("The mesh has no colours that could be kept; set Keep to Nothing.");
+    o.keep = mesh.face_selected;
+  }
   return o;
 }
 
@@ -84,13 +96,14 @@ void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, con
                  Progress& progress) {
   const int size = inputs.integer("TextureSize");
   const std::string flaw = texture_coordinates_flaw(mesh, size);
+  const Mesh before = mesh;
   if (!flaw.empty()) {
     Atlas atlas = make_atlas(mesh, size);
     log_value(progress, "own_texture_coordinates", flaw);
     log_value(progress, "charts", atlas.charts);
     mesh.wedges = std::move(atlas.wedges);
   }
-  const BakedTexture baked = bake_texture(mesh, mesh.wedges, size, colors, 0);
+  const BakedTexture baked = bake_texture(before, mesh.wedges, size, colors, 0);
   std::string name = std::filesystem::path(inputs.layer("Mesh").name()).filename().string();
   if (name.empty()) name = "colorized";
   mesh.textures = {write_texture(baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
@@ -109,7 +122,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   Progress opening = progress.part(0, 20), coloring = progress.part(20, 90);
   opening.stage("Reading the models", 0, 100);
   const ModelDatabase listed(database, opening);
-  const ColorizeMeshOptions options = options_of(inputs, read_class_preset(listed.path()));
+  const ColorizeMeshOptions options = options_of(inputs, mesh, read_class_preset(listed.path()));
   const auto models = recent_models(listed, options.views, options.rendering, opening);
   std::vector<std::string> kept = models->files();
   kept.insert(kept.end(), mesh.textures.begin(), mesh.textures.end());

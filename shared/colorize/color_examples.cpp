@@ -14,10 +14,10 @@
 namespace parts {
 namespace {
 
-/// Mean squared difference of two reliefs whose centroids coincide; where one
+/// Mean squared difference of two reliefs; where one
 /// has no foreground, as large as the larger relief.
-double relief_difference(const PatchImage& a, const PatchImage& b) {
-  const cv::Point2d shift = centroid(a.mask) - centroid(b.mask);
+double relief_difference(const PatchImage& a, const PatchImage& b, bool centered) {
+  const cv::Point2d shift = centered ? centroid(a.mask) - centroid(b.mask) : cv::Point2d();
   const cv::Matx23d move(1, 0, shift.x, 0, 1, shift.y);
   cv::Mat moved, mask;
   cv::warpAffine(b.planes[kReliefPlane], moved, move, a.mask.size(), cv::INTER_LINEAR);
@@ -90,9 +90,9 @@ std::vector<int> choosable(const std::vector<std::string>& names, const std::vec
 namespace {
 
 /// What each pixel of an image would have to be changed by to be as the pixel
-/// at the same place, seen from the centroids, of another; one list a colour plane.
-std::array<std::vector<double>, 3> steps_between(const PatchImage& image, const PatchImage& like) {
-  const cv::Point2d shift = centroid(like.mask) - centroid(image.mask);
+/// at the same place of another; one list a colour plane.
+std::array<std::vector<double>, 3> steps_between(const PatchImage& image, const PatchImage& like, bool centered) {
+  const cv::Point2d shift = centered ? centroid(like.mask) - centroid(image.mask) : cv::Point2d();
   const cv::Rect frame({0, 0}, like.mask.size());
   std::array<std::vector<double>, 3> steps;
   for (int y = 0; y < image.mask.rows; ++y)
@@ -122,17 +122,17 @@ cv::Vec3d tint(const std::array<std::vector<double>, 3>& steps) {
 
 }  // namespace
 
-bool harmonize(PatchImage& image, const PatchImage& like) {
-  const cv::Vec3d step = tint(steps_between(image, like));
+bool harmonize(PatchImage& image, const PatchImage& like, bool centered) {
+  const cv::Vec3d step = tint(steps_between(image, like, centered));
   for (int k = 0; k < 3; ++k)
     if (step[k] != 0) image.planes[kYPlane + k] += step[k];
   return step != cv::Vec3d();
 }
 
-double discord(const PatchImage& image, const PatchImage& like, bool harmonized) {
+double discord(const PatchImage& image, const PatchImage& like, const ColorizeOptions& options) {
   constexpr double kOther = 0.1;  // of Y or Cb or Cr: as skin differs from hair or a shirt
-  const auto steps = steps_between(image, like);
-  const cv::Vec3d taken = harmonized ? tint(steps) : cv::Vec3d();
+  const auto steps = steps_between(image, like, options.centered);
+  const cv::Vec3d taken = options.harmonize ? tint(steps) : cv::Vec3d();
   if (steps[0].empty()) return 1;
   long other = 0;
   for (std::size_t i = 0; i < steps[0].size(); ++i) {
@@ -143,34 +143,41 @@ double discord(const PatchImage& image, const PatchImage& like, bool harmonized)
   return double(other) / double(steps[0].size());
 }
 
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options,
-                     ColorizeReport& report) {
+void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const PatchImage& kept,
+                     const ColorizeOptions& options, ColorizeReport& report) {
   if (options.examples < 1) throw UserError("Examples must be 1 or more; 1 morphs one image-map onto the shape.");
   constexpr double kPatchwork = 0.3;     // discord beyond which one would see where colours come from
   constexpr double kDiscord = 0.2;       // counts as much as the median difference in shape; less hardly matters
   constexpr std::size_t kCompared = 32;  // of the most similar ones
-  for (ColorExample& c : all) c.difference = relief_difference(query, c.image);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const ColorExample& a, const ColorExample& b) { return a.difference < b.difference; });
+  for (ColorExample& c : all) c.difference = relief_difference(query, c.image, options.centered);
+  const auto sort = [&] {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const ColorExample& a, const ColorExample& b) { return a.difference < b.difference; });
+    return std::max(all[all.size() / 2].difference, 1e-12);
+  };
+  double typical = sort();
+  if (!kept.mask.empty()) {
+    for (ColorExample& c : all) c.difference += typical * std::pow(discord(c.image, kept, options) / kDiscord, 2);
+    typical = sort();
+  }
   if (!options.choose.empty()) return;
   if (options.seed != 0) {
     std::mt19937 engine(options.seed);
     std::swap(all[0], all[engine() % unsigned((all.size() + 1) / 2)]);
   }
-  const double typical = std::max(all[all.size() / 2].difference, 1e-12);
   all.resize(std::min(all.size(), std::max(kCompared, std::size_t(options.examples))));
   std::vector<std::pair<double, std::size_t>> others;
   for (std::size_t i = 1; i < all.size(); ++i) {
-    const double d = discord(all[i].image, all[0].image, options.harmonize);
+    const double d = discord(all[i].image, all[0].image, options);
     if (d < kPatchwork) others.emplace_back(all[i].difference / typical + std::pow(d / kDiscord, 4), i);
   }
   std::sort(others.begin(), others.end());
-  std::vector<ColorExample> kept;
-  kept.push_back(std::move(all[0]));
+  std::vector<ColorExample> chosen;
+  chosen.push_back(std::move(all[0]));
   for (const auto& [cost, i] : others)
-    if (int(kept.size()) < options.examples) kept.push_back(std::move(all[i]));
-  report.left_out = std::min(options.examples, int(all.size())) - int(kept.size());
-  all = std::move(kept);
+    if (int(chosen.size()) < options.examples) chosen.push_back(std::move(all[i]));
+  report.left_out = std::min(options.examples, int(all.size())) - int(chosen.size());
+  all = std::move(chosen);
 }
 
 SynthesisOptions color_synthesis(const ColorizeOptions& options) {
@@ -183,6 +190,7 @@ SynthesisOptions color_synthesis(const ColorizeOptions& options) {
   s.synthesized = {kYPlane, kCbPlane, kCrPlane};
   s.patch_sizes = options.patch_sizes;
   s.position = options.weight_position;
+  s.centered = options.centered;
   s.max_iterations = options.max_iterations;
   s.pca_share = options.pca_share;
   s.threads = options.threads;
@@ -198,11 +206,12 @@ cv::Mat to_color(const std::vector<cv::Mat>& ycbcr) {
   return color;
 }
 
-std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, bool harmonized, ColorizeReport& report) {
+std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
+                                         ColorizeReport& report) {
   std::vector<PatchImage> images;
   for (ColorExample& e : examples) {
     report.used.push_back(e.name);
-    if (harmonized && !images.empty() && harmonize(e.image, images.front()))
+    if (options.harmonize && !images.empty() && harmonize(e.image, images.front(), options.centered))
       report.harmonized.push_back(report.used.back());
     images.push_back(std::move(e.image));
   }

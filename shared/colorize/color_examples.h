@@ -23,6 +23,7 @@ struct ColorizeOptions {
   double weight_position = 5;  ///< of the place relative to the foreground's centroid
   int max_iterations = 10;     ///< a level
   double pca_share = 0.2;      ///< of the principal components that propose candidates (5.2)
+  bool centered = true;        ///< images are compared centroid on centroid; false: as they lie, aligned already
   bool harmonize = true;       ///< examples of another exposure or tint are matched to the best one
   unsigned seed = 0;           ///< 0: the most similar examples; others: drawn among the more similar half
   int threads = 0;             ///< 0 = all cores; the result does not depend on it
@@ -64,20 +65,22 @@ std::vector<int> choosable(const std::vector<std::string>& names, const std::vec
 /// Takes off an example what makes it differ from another all over: exposure or
 /// tint. What differs here and there (a red coat and a blue one) is no tint.
 /// @return whether there was such a difference
-bool harmonize(PatchImage& image, const PatchImage& like);
+bool harmonize(PatchImage& image, const PatchImage& like, bool centered);
 
 /// The share of the surface where two examples have other colours: put together
-/// they would give patchwork.
-/// @param harmonized  after taking off what differs all over
-double discord(const PatchImage& image, const PatchImage& like, bool harmonized);
+/// they would give patchwork. With options.harmonize after taking off what
+/// differs all over.
+double discord(const PatchImage& image, const PatchImage& like, const ColorizeOptions& options);
 
 /// Sorts by similarity of shape and keeps options.examples of them: the most
 /// similar one, and others that go with its colours; fewer where too few do,
 /// as the result would be patchwork (thesis Fig. 31). With a seed the first is
 /// drawn among the better half. Those chosen by name are all kept.
+/// @param kept  colours of the query that stay, with which the examples' are to
+///              go; an empty mask: none
 /// @throws UserError  options.examples is below 1
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const ColorizeOptions& options,
-                     ColorizeReport& report);
+void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const PatchImage& kept,
+                     const ColorizeOptions& options, ColorizeReport& report);
 
 /// The engine's channels and weights.
 SynthesisOptions color_synthesis(const ColorizeOptions& options);
@@ -85,8 +88,9 @@ SynthesisOptions color_synthesis(const ColorizeOptions& options);
 /// BGR, 8 bits, from Y, Cb and Cr as 32F.
 cv::Mat to_color(const std::vector<cv::Mat>& ycbcr);
 
-/// Fills used, harmonized and the images, in the order of the examples.
-std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, bool harmonized, ColorizeReport& report);
+/// The examples' images, harmonised with the first one's. Fills used and harmonized.
+std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
+                                         ColorizeReport& report);
 
 /// Fills shares, objective and patch_distance.
 void report_synthesis(const SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report);

@@ -140,8 +140,8 @@ ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const
   const Frame frame = fit(result.mask, source.image_size(), like.reach, like.center);
   result.aligned = frame.moved;
   const PatchImage query = query_of(depth, result.mask, frame, source.image_size(), like.relief);
-  select_examples(examples, query, options, result);
-  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options.harmonize, result);
+  select_examples(examples, query, {}, options, result);
+  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options, result);
 
   Progress rest = progress.part(20, 100);
   const SynthesisResult found = synthesize(query, images, color_synthesis(options), {}, rest);

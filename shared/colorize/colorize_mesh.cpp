@@ -7,6 +7,7 @@
 
 #include "align/align.h"
 #include "colorize/hidden_colors.h"
+#include "colorize/kept_colors.h"
 #include "geometry/attributes.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
@@ -19,10 +20,12 @@ namespace {
 
 using Vec3f = Eigen::Vector3f;
 
-constexpr int kComparison = 96;       // pixels of views by which models are compared
-constexpr int kSearched = 256;        // of the finest level at which patches are searched
-constexpr int kCoarsest = 64;         // of the coarsest level, at most
-constexpr float kClearlySeen = 0.1f;  // see ViewSheet::look(): below, hidden_colors take over
+constexpr int kComparison = 96;             // pixels of views by which models are compared
+constexpr int kSearched = 256;              // of the finest level at which patches are searched
+constexpr int kCoarsest = 64;               // of the coarsest level, at most
+constexpr double kFinest = 1e12;            // pixels a face: the finest level of a texture
+constexpr Color kNone{200, 200, 200, 255};  // where a mesh has no colour
+constexpr float kClearlySeen = 0.1f;        // see ViewSheet::look(): below, hidden_colors take over
 
 /// Side by side; all of one height.
 PatchImage beside(const std::vector<PatchImage>& images) {
@@ -57,8 +60,8 @@ std::vector<PatchImage> planes_of(const std::vector<Example>& views) {
 ClassModel pose(const Mesh& mesh, const ClassModels& models, const ColorizeMeshOptions& options) {
   ClassModel query;
   query.mesh = mesh;
-  query.mesh.wedges.clear(), query.mesh.vertex_color.clear(), query.mesh.face_color.clear();
   query.mesh.vertex_normal.clear();
+  if (!options.keep.empty()) query.textures = load_textures(mesh);
   for (const Triangle& f : mesh.faces)
     for (int v : f)
       if (!mesh.vertices[v].allFinite())
@@ -114,7 +117,15 @@ std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, c
   ExampleOptions small = options.rendering;
   const double shrink = std::min(1.0, double(kComparison) / std::max(small.width, small.height));
   small.width = std::max(8, int(small.width * shrink)), small.height = std::max(8, int(small.height * shrink));
-  const PatchImage seen = beside(planes_of(see(query, frame * shrink, options, small)));
+  const std::vector<Example> views = see(query, frame * shrink, options, small);
+  std::vector<PatchImage> tiles = planes_of(views);
+  const PatchImage seen = beside(tiles);
+  PatchImage kept;
+  if (!options.keep.empty()) {
+    const std::vector<cv::Mat> masks = kept_pixels(query, options.keep, views);
+    for (std::size_t v = 0; v < tiles.size(); ++v) tiles[v].mask = masks[v];
+    kept = beside(tiles);
+  }
   if (cv::countNonZero(seen.mask) < 16) throw UserError("No view shows the mesh; check Views, Up and Front.");
   std::vector<std::string> names;
   for (int i = 0; i < models.size(); ++i) names.push_back(models.name(i));
@@ -130,7 +141,7 @@ std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, c
   }
   if (all.empty())
     throw UserError("No model of the database has colours; give models with textures or vertex colours.");
-  select_examples(all, seen, options, report);
+  select_examples(all, seen, kept, options, report);
   return all;
 }
 
@@ -150,7 +161,6 @@ std::vector<cv::Rect> used_parts(const std::vector<std::vector<PatchImage>>& obj
 /// Levels to search, those above them that only carry matches on.
 SynthesisOptions synthesis_for(const ColorizeMeshOptions& options, int longest, double foreground) {
   SynthesisOptions s = color_synthesis(options);
-  s.centered = false;
   s.size = std::sqrt(foreground);
   s.longest_coarsest = 0;
   if (s.patch_sizes.empty()) return s;  // the engine says so
@@ -229,9 +239,23 @@ void color_vertices(const Mesh& posed, const ClassModel& like, int threads, Mesh
   complete_colors(there, known, like, colors.vertex, threads);
 }
 
+/// The others' colours are made to go with those that stay.
+void match_kept(const Mesh& posed, int threads, MeshColors& colors) {
+  std::vector<Vec3f> own(posed.vertices.size(), Vec3f::Zero());
+  std::vector<char> kept(posed.vertices.size(), 0);
+  for (int f = 0; f < posed.face_count(); ++f)
+    for (int k = 0; k < 3 && colors.keep[f]; ++k) {
+      const int v = posed.faces[f][k];
+      own[v] = to_ycbcr(surface_color(posed, colors.textures, f, Vec3f::Unit(k), kFinest, kNone));
+      kept[v] = 1;
+    }
+  colors.correction = corrections(posed.vertices, colors.vertex, own, kept, threads);
+}
+
 }  // namespace
 
 Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
+  if (!keep.empty() && keep[face]) return to_ycbcr(surface_color(mesh, textures, face, b, kFinest, kNone));
   const Triangle& t = mesh.faces[face];
   const Vec3 p = double(b[0]) * posed[t[0]] + double(b[1]) * posed[t[1]] + double(b[2]) * posed[t[2]];
   const Vec3 n =
@@ -239,11 +263,14 @@ Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
   const Vec3f mean = b[0] * vertex[t[0]] + b[1] * vertex[t[1]] + b[2] * vertex[t[2]];
   Vec3f direct = mean;
   const float share = std::min(1.f, sheet.look(planes, 0, p, n, direct.data()) / kClearlySeen);
-  return share * direct + (1 - share) * mean;
+  Vec3f color = share * direct + (1 - share) * mean;
+  if (!correction.empty()) color += b[0] * correction[t[0]] + b[1] * correction[t[1]] + b[2] * correction[t[2]];
+  return color;
 }
 
-MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMeshOptions& options,
-                         Progress& progress) {
+MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMeshOptions& given, Progress& progress) {
+  ColorizeMeshOptions options = given;
+  options.centered = false;
   if (mesh.faces.empty()) throw UserError("The mesh has no faces; choose a layer that holds a surface.");
   if (options.views.empty()) throw UserError("No view is given; give yaw,pitch in degrees, as in 0,0; 90,0; 180,0.");
   MeshColors result;
@@ -278,7 +305,7 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
   for (std::size_t k = 0; k < examples.size(); ++k) examples[k].image = result.sheet.assemble(planes[k + 1]);
   planes.clear();
   const int like = examples.front().object;
-  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options.harmonize, result);
+  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options, result);
 
   Progress synthesis = progress.part(30, 90);
   const SynthesisResult found = synthesize(sheet, images, engine, {}, synthesis,
@@ -289,6 +316,10 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
   result.oriented = faces_outwards(query, frame, options);
   progress.stage("Colouring the surface", 90, 100);
   color_vertices(query.mesh, models.get(like), options.threads, result);
+  if (!options.keep.empty()) {
+    result.keep = options.keep, result.textures = query.textures;
+    match_kept(query.mesh, options.threads, result);
+  }
   result.posed = std::move(query.mesh.vertices);
   return result;
 }
@@ -319,7 +350,8 @@ std::vector<Color> vertex_colors(const MeshColors& colors) {
   const int n = int(colors.vertex.size());
   for (int k = 0; k < 3; ++k) {
     planes.emplace_back(std::max(n, 1), 1, CV_32F, cv::Scalar(0));
-    for (int v = 0; v < n; ++v) planes.back().at<float>(v) = colors.vertex[v][k];
+    for (int v = 0; v < n; ++v)
+      planes.back().at<float>(v) = colors.vertex[v][k] + (colors.correction.empty() ? 0 : colors.correction[v][k]);
   }
   const cv::Mat bgr = to_color(planes);
   std::vector<Color> out(std::size_t(n), Color{});

@@ -10,10 +10,12 @@
 namespace parts {
 
 struct ColorizeMeshOptions : ColorizeOptions {
-  Vec3 up{0, 1, 0}, front{0, 0, 1};  ///< how the mesh stands
-  std::vector<View> views;           ///< from which the surface is seen and coloured
-  ExampleOptions rendering;          ///< size of the views, how the models stand; light is not used
-  bool align = true;                 ///< the mesh is moved onto the model most like it, for the comparison
+  Vec3 up{0, 1, 0}, front{0, 0, 1};         ///< how the mesh stands
+  std::vector<View> views;                  ///< from which the surface is seen and coloured
+  ExampleOptions rendering;                 ///< size of the views, how the models stand; light is not used
+  bool align = true;                        ///< the mesh is moved onto the model most like it, for the comparison
+  std::vector<Eigen::Vector3f> correction;  ///< per vertex, added to what was found; empty: none
+  std::vector<char> keep;  ///< per face: its own colours stay, and the others go with them; empty: none
 };
 
 /// A mesh with colours all over its surface.
@@ -25,6 +27,10 @@ struct MeshColors : ColorizeReport {
   ViewSheet sheet;
   bool oriented = true;  ///< the faces look outwards
   double seen = 0;       ///< share of the surface that some view sees; the rest follows the model most like it
+
+  std::vector<Eigen::Vector3f> correction;  ///< per vertex, added to what was found; empty: none
+  std::vector<char> keep;                   ///< faces whose colours are their own
+  Textures textures;                        ///< of the mesh, for these
 
   /// Y, Cb and Cr at a point of a face.
   Eigen::Vector3f at(const Mesh& mesh, int face, const Eigen::Vector3f& barycentric) const;

@@ -15,11 +15,6 @@ namespace {
 
 using Vec3f = Eigen::Vector3f;
 
-Vec3f ycbcr(const Vec3f& bgr) {
-  const float y = (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;
-  return {y, (bgr[0] / 255 - y) * 0.564f + 128 / 255.f, (bgr[2] / 255 - y) * 0.713f + 128 / 255.f};
-}
-
 /// The model's colours where it is closest to the vertices of faces.
 std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used, const ClassModel& model,
                                 int threads) {
@@ -33,8 +28,8 @@ std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used
       if (!used[v] || !posed.vertices[v].allFinite()) continue;
       const FaceHit hit = closest(posed.vertices[v], hint);
       if (hit.face < 0) continue;
-      color[v] = ycbcr(surface_color(model.mesh, model.textures, hit.face, hit.barycentric.cast<float>(), kFinest,
-                                     {200, 200, 200, 255}));
+      color[v] = to_ycbcr(surface_color(model.mesh, model.textures, hit.face, hit.barycentric.cast<float>(), kFinest,
+                                        {200, 200, 200, 255}));
     }
   });
   return color;
@@ -78,6 +73,11 @@ void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std
 }
 
 }  // namespace
+
+Vec3f to_ycbcr(const Vec3f& bgr) {
+  const float y = (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;
+  return {y, (bgr[0] / 255 - y) * 0.564f + 128 / 255.f, (bgr[2] / 255 - y) * 0.713f + 128 / 255.f};
+}
 
 void complete_colors(const Mesh& posed, const std::vector<char>& known, const ClassModel& model,
                      std::vector<Eigen::Vector3f>& color, int threads) {

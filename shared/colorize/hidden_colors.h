@@ -5,6 +5,9 @@
 
 namespace parts {
 
+/// Y, Cb and Cr, 0..1, of B, G and R, 0..255.
+Eigen::Vector3f to_ycbcr(const Eigen::Vector3f& bgr);
+
 /// Completes the colours of a mesh's vertices. A hidden vertex takes the colour
 /// of a model's surface where that is closest, and a correction that continues
 /// the difference between mesh and model at the vertices around, harmonically.

@@ -95,6 +95,30 @@ TEST_F(ColorizeMeshTest, HiddenPartsFollowTheModel) {
   EXPECT_LT(mean_error(query, vertex_colors(colors)), 8);
 }
 
+TEST_F(ColorizeMeshTest, KeptColorsStayAndTheOthersGoWithThem) {
+  model("dark.ply", painted(egg(0.3), 0.5));
+  Mesh query = egg(0.4);
+  for (const Vec3& v : query.vertices) {
+    Color c = paint(v, 0.5);
+    for (int k = 0; k < 3; ++k) c[k] = std::uint8_t(c[k] + 60);  // brighter all over
+    query.vertex_color.push_back(c);
+  }
+  options_.keep = faces_where(query, [](const Vec3& center) { return center.z() > 0; });
+  const std::vector<Color> truth = query.vertex_color;
+  const MeshColors colors = colored(query);
+  const std::vector<Color> found = vertex_colors(colors);
+  double front = 0, back = 0;
+  int fronts = 0, backs = 0;
+  for (int v = 0; v < query.vertex_count(); ++v) {
+    double error = 0;
+    for (int k = 0; k < 3; ++k) error += std::abs(found[v][k] - truth[v][k]) / 3.;
+    (query.vertices[v].z() > 0.1 ? front : back) += error;
+    ++(query.vertices[v].z() > 0.1 ? fronts : backs);
+  }
+  EXPECT_LT(front / fronts, 1);
+  EXPECT_LT(back / backs, 12);
+}
+
 TEST_F(ColorizeMeshTest, TheTextureShowsTheSameAsTheVertices) {
   model("a.ply", painted(egg(0.3)));
   const Mesh query = egg(0.4);
