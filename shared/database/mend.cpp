@@ -176,7 +176,7 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
       ++out.mended;
     } catch (const UserError& e) {
       failure = e.what();
-      if (regions.size() > 1) progress.log(std::string("left_as_it_was: ") + e.what());
+      if (out.regions > 1) progress.log(std::string("left_as_it_was: ") + e.what());
     }
   }
   if (out.mended == 0) throw UserError(failure);
