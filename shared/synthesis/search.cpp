@@ -42,7 +42,7 @@ PatchTree::PatchTree(const std::vector<LevelExample>& examples, const PatchLayou
     for (long i = begin; i < end; ++i) {
       const LevelExample& e = examples[all[i].example];
       gather(e.plane, e.coverage, all[i].x, all[i].y, layout, w);
-      project(w, &projected[i * axes_]);
+      for (int a = 0; a < axes_; ++a) projected[i * axes_ + a] = along(a, w);
     }
   });
   std::vector<int> order(all.size());
@@ -91,14 +91,12 @@ void PatchTree::find_axes(const std::vector<LevelExample>& examples, const Patch
   }
 }
 
-void PatchTree::project(const Window& window, float* to) const {
+float PatchTree::along(int axis, const Window& window) const {
   const int lanes = int(picks_.size());
-  const Lane* basis = basis_.data();
-  for (int a = 0; a < axes_; ++a, basis += lanes + 1) {
-    Lane sum = Lane::Zero();
-    for (int j = 0; j < lanes; ++j) sum += basis[j] * window.value[picks_[j]];
-    to[a] = sum.sum() + basis[lanes][0] * window.position.x() + basis[lanes][1] * window.position.y();
-  }
+  const Lane* basis = basis_.data() + long(axis) * (lanes + 1);
+  Lane sum = Lane::Zero();
+  for (int j = 0; j < lanes; ++j) sum += basis[j] * window.value[picks_[j]];
+  return sum.sum() + basis[lanes][0] * window.position.x() + basis[lanes][1] * window.position.y();
 }
 
 int PatchTree::build(std::vector<int>& order, int begin, int end, const std::vector<float>& rows,
@@ -138,11 +136,9 @@ int PatchTree::build(std::vector<int>& order, int begin, int end, const std::vec
 }
 
 int PatchTree::leaf(const Window& window) const {
-  std::vector<float> row(axes_);
-  project(window, row.data());
   int node = 0;
-  while (nodes_[node].axis >= 0)
-    node = row[nodes_[node].axis] < nodes_[node].split ? nodes_[node].left : nodes_[node].right;
+  while (nodes_[node].axis >= 0)  // few of the axes are asked
+    node = along(nodes_[node].axis, window) < nodes_[node].split ? nodes_[node].left : nodes_[node].right;
   return nodes_[node].left;
 }
 

@@ -49,7 +49,7 @@ class PatchTree {
   void find_axes(const std::vector<LevelExample>& examples, const PatchLayout& layout, const std::vector<Match>& all,
                  double share, int threads);
   int build(std::vector<int>& order, int begin, int end, const std::vector<float>& rows, std::vector<Match>& all);
-  void project(const Window& window, float* to) const;
+  float along(int axis, const Window& window) const;
 
   int axes_ = 0;
   std::vector<int> picks_;   ///< lanes of a window that the components look at

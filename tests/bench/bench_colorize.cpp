@@ -92,7 +92,7 @@ struct Score {
             std::to_string(count),
             text(ours / count, 2),
             text(nearest / count, 2),
-            ratio(ours / nearest),
+            nearest > 0 ? ratio(ours / nearest) : "",
             std::to_string(better),
             std::to_string(count - better),
             text(seconds / count, 2)};

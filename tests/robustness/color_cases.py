@@ -112,6 +112,10 @@ def colorize_mesh(case, folder):
                          ("a texture of unknown format", dict(TextureFile=folder / "texture.xyz")),
                          ("a texture in a folder that is not there", dict(TextureFile=folder / "no" / "t.png"))):
         yield row(name, allowed=SENTENCE, **values)
+    yield row("kept colours, nothing selected", painted(egg()), SENTENCE, Keep="Selected faces")
+    yield row("kept colours of a grey mesh", egg().select_faces(lambda c: c[:, 2] > 0), SENTENCE, Keep="Selected faces")
+    yield row("kept colours", painted(egg(1.05)).select_faces(lambda c: c[:, 2] > 0), OK, Keep="Selected faces")
+    yield row("all colours kept", painted(egg(1.05)).select_faces(lambda c: c[:, 2] > -9), OK, Keep="Selected faces")
     yield row("a huge texture in 1 GB", allowed=SENTENCE, TextureSize=16384)._replace(memory=1 << 30)
     for factor in (1e6, 1e-6, 1e30, 1e-30):
         yield row(f"size {factor:g}", egg(1.05).scaled(factor))
