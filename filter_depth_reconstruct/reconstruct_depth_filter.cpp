@@ -204,9 +204,10 @@ void log_result(const DepthResult& r, Progress& progress) {
   log_value(progress, "strangeness", r.strangeness);
   log_value(progress, "trusted", r.trusted ? "yes" : "no");
   if (!r.trusted)
-    log_value(progress, "warning",
-              "The image is unlike the examples: its patches are " + std::to_string(r.strangeness).substr(0, 4) +
-                  " times as far from them as theirs from each other; the result is not to be trusted.");
+    log_value(
+        progress, "warning",
+        "The image is unlike the examples: its patches are " + std::to_string(r.strangeness).substr(0, 4) +
+            " times as far from them as those of the strangest member of the class; the result is not to be trusted.");
 }
 
 /// @return the texture's file

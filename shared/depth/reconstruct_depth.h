@@ -58,7 +58,7 @@ struct DepthResult {
   cv::Mat example;                 ///< 32S, the query's size: index into used; -1 = background
   cv::Mat distance;                ///< 32F, the query's size: of each patch, in standard deviations
   std::vector<std::vector<double>> plausibility;  ///< a level, coarse to fine, and iteration: mean log of eq. 3
-  double strangeness = 1;  ///< mean patch distance over that of the class's own members; 1 = like a member
+  double strangeness = 1;  ///< mean patch distance over that of the strangest of a few members of the class
   bool trusted = true;     ///< false: the query is unlike the class
 };
 

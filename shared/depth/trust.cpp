@@ -31,15 +31,15 @@ double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOp
     objects.push_back(set[k].object);
   }
   if (members.size() < 3) return 1;  // nothing to compare with
-  double others = 0;
-  const int asked = std::min(4, int(members.size()));
+  double strangest = 0;
+  const int asked = std::min(6, int(members.size()));
   for (int i = 0; i < asked; ++i) {
     const size_t k = i * members.size() / asked;
     std::vector<PatchImage> rest = members;
     rest.erase(rest.begin() + long(k));
-    others += mean_distance(members[k], rest, options) / asked;
+    strangest = std::max(strangest, mean_distance(members[k], rest, options));
   }
-  return others > 0 ? mean_distance(small, members, options) / others : 1;
+  return strangest > 0 ? mean_distance(small, members, options) / strangest : 1;
 }
 
 }  // namespace parts

@@ -6,10 +6,10 @@
 namespace parts {
 
 /// Above this, a query is too unlike the class.
-constexpr double untrusted = 2;
+constexpr double untrusted = 1.5;
 
 /// How far the query's patches are from the examples', as a multiple of how far
-/// the patches of the class's own members are from those of the others. On a
+/// those of the strangest of a few members of the class are from the others'. On a
 /// small scale, before and apart from the reconstruction.
 double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOptions& options);
 

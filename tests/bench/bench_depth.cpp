@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth from one image: speed, the search beside the exact one, and accuracy,
 // leaving one object out, beside the class mean and the nearest example.
-// bench_depth [speed|search|accuracy|views|sizes|ablations] [EVERY]: of the
+// bench_depth [speed|search|light|accuracy|views|sizes|ablations] [EVERY]: of the
 // queries only each EVERY-th.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <flann/flann.hpp>
 #include <iostream>
 #include <map>
 #include <random>
@@ -20,6 +21,7 @@
 #include "depth/view_search.h"
 #include "mappings/examples.h"
 #include "raster/mask.h"
+#include "synthesis/level.h"
 #include "synthesis/pyramid.h"
 
 using namespace parts;
@@ -104,9 +106,11 @@ struct Score {
 };
 
 /// One query, and what the others say of it.
-void measure(ExampleSource& all, int k, const View& view, const DepthOptions& options, double share, Score& score) {
+/// @param queries  where the query is rendered, if not like the others
+void measure(ExampleSource& all, int k, const View& view, const DepthOptions& options, double share, Score& score,
+             ExampleSource* queries = nullptr) {
   Others others(all, k);
-  const Example q = all.get(k, view);
+  const Example q = (queries ? *queries : all).get(k, view);
   Progress quiet;
   const Stopwatch watch;
   const DepthResult r = reconstruct_depth({q.image, q.mask}, others, options, quiet);
@@ -274,38 +278,140 @@ void speed() {
   table.note("full frame: the optimisation alone, every pixel foreground. The thesis took 40 minutes.");
 }
 
+/// Windows as rows, weighted as the query's are where all of them is foreground.
+std::vector<float> rows(const LevelExample& e, const std::vector<Match>& windows, const PatchLayout& layout) {
+  std::vector<float> all;
+  Window w;
+  for (const Match& m : windows) {
+    gather(e.plane, e.coverage, m.x, m.y, layout, w);
+    for (int i = 0; i < layout.window(); ++i) {
+      const float g = std::sqrt(layout.gaussian[i / layout.lanes]);
+      for (int c = 0; c < 4; ++c) all.push_back(w.value[i][c] * g);
+    }
+    all.insert(all.end(), {w.position.x(), w.position.y()});
+  }
+  return all;
+}
+
+std::vector<Match> inside(const LevelExample& e, int k) {
+  std::vector<Match> list;
+  for (int y = 0; y < e.plane.height; ++y)
+    for (int x = 0; x < e.plane.width; ++x)
+      if (e.plane.inside[e.plane.index(x, y)]) list.push_back({k, x, y});
+  return list;
+}
+
+struct Searched {
+  double squares = 0, build = 0, cpu = 0;
+};
+
+/// FLANN's randomised kd-trees over whole rows; what they propose is scored like ours.
+Searched search_flann(const LevelExample& query, const std::vector<LevelExample>& examples, const PatchLayout& layout,
+                      int checks) {
+  Searched result;
+  const Stopwatch building;
+  std::vector<Match> windows;
+  std::vector<float> data;
+  for (size_t k = 0; k < examples.size(); ++k) {
+    const std::vector<Match> some = inside(examples[k], int(k));
+    const std::vector<float> more = rows(examples[k], some, layout);
+    windows.insert(windows.end(), some.begin(), some.end());
+    data.insert(data.end(), more.begin(), more.end());
+  }
+  const size_t columns = data.size() / windows.size();
+  flann::seed_random(1);
+  flann::Index<flann::L2<float>> index(flann::Matrix<float>(data.data(), windows.size(), columns),
+                                       flann::KDTreeIndexParams(4));
+  index.buildIndex();
+  result.build = building.cpu();
+  const Stopwatch watch;
+  const std::vector<Match> asked = inside(query, 0);
+  std::vector<float> points = rows(query, asked, layout), distances(asked.size());
+  std::vector<int> found(asked.size());
+  flann::Matrix<int> indices(found.data(), asked.size(), 1);
+  flann::Matrix<float> far(distances.data(), asked.size(), 1);
+  index.knnSearch(flann::Matrix<float>(points.data(), asked.size(), columns), indices, far, 1,
+                  flann::SearchParams(checks));
+  result.cpu = watch.cpu();
+  Window w;
+  for (size_t i = 0; i < asked.size(); ++i) {
+    gather(query.plane, query.coverage, asked[i].x, asked[i].y, layout, w);
+    const Match& m = windows[found[i]];
+    result.squares += distance(w, examples[m.example].plane, m.x, m.y, layout, 1e30f);
+  }
+  return result;
+}
+
+/// The engine's own search of one level, its tree and its two passes.
+Searched search_ours(const LevelExample& query, const std::vector<LevelExample>& examples, const PatchLayout& layout,
+                     bool exact) {
+  Searched result;
+  const Stopwatch building;
+  std::unique_ptr<PatchTree> tree;
+  if (!exact) tree = std::make_unique<PatchTree>(examples, layout, 60000, 0, 0);
+  result.build = building.cpu();
+  const Stopwatch watch;
+  std::vector<Match> matches(size_t(query.plane.width) * query.plane.height);
+  search(query.plane, query.coverage, examples, layout, tree.get(), 0, matches);
+  result.cpu = watch.cpu();
+  for (const Match& m : matches)
+    if (m.example >= 0) result.squares += m.distance;
+  return result;
+}
+
 void search() {
-  Table table("The search beside the exact nearest neighbour: heads, 150 x 200, 12 examples, 9 x 9, depth known",
-              {"", "mean squared distance", "of exact", "cpu us a query"});
+  Table table("The search of windows of 9 x 9: heads, 150 x 200, 12 examples, depth known",
+              {"", "mean squared distance", "of exact", "index, cpu s", "cpu us a query"});
   const auto all = open("heads");
-  std::vector<PatchImage> images;
+  const SynthesisOptions options = synthesis_options({});
+  std::vector<ImagePyramid> pyramids;
   for (int k = 0; k < 13; ++k) {
     const Example e = all->get(k, {0, 0});
     const double middle = cv::mean(e.depth, e.mask)[0];
-    images.push_back({{intensity(e.image), (e.depth - middle) * e.camera.scale}, e.mask});
+    pyramids.push_back(make_pyramid({{intensity(e.image), (e.depth - middle) * e.camera.scale}, e.mask}, 1));
   }
-  double squares[2] = {0, 0}, cpu[2] = {0, 0}, queries = 0;
-  for (int k = 0; k < 1; ++k) {  // exact search takes a minute each
-    std::vector<PatchImage> others = images;
-    others.erase(others.begin() + k);
-    SynthesisOptions o = synthesis_options({});
-    o.synthesized = {};
-    o.patch_sizes = {9};
-    o.longest_coarsest = 0;
-    o.max_iterations = 1;
-    for (const bool exact : {false, true}) {
-      o.exact_search = exact;
-      Progress quiet;
-      const Stopwatch watch;
-      const SynthesisResult r = synthesize(images[k], others, o, {}, quiet);
-      cpu[exact] += watch.cpu();
-      squares[exact] += cv::norm(r.distance, cv::NORM_L2SQR);
+  const ImagePyramid asked = pyramids.front();
+  pyramids.erase(pyramids.begin());
+  const double queries = cv::countNonZero(asked.coverage[0] >= 0.5f);
+  const LevelSetup setup = make_setup(pyramids, options, 0, 9, std::sqrt(queries));
+  std::vector<LevelExample> examples;
+  for (const ImagePyramid& p : pyramids) examples.push_back(make_level_example(p, options, setup));
+  const LevelExample query = make_level_example(asked, options, setup);
+  const Searched exact = search_ours(query, examples, setup.layout, true);
+  const auto add = [&](const char* name, const Searched& s) {
+    table.row(
+        {name, text(s.squares / queries), text(s.squares / exact.squares), text(s.build), text(s.cpu / queries * 1e6)});
+  };
+  add("ours: kd-tree over components, propagated", search_ours(query, examples, setup.layout, false));
+  for (const int checks : {64, 256, 1024})
+    add(("FLANN, 4 kd-trees, " + std::to_string(checks) + " checks").c_str(),
+        search_flann(query, examples, setup.layout, checks));
+  add("exact", exact);
+}
+
+/// Queries in another light than the one that examples are rendered in at first.
+void light(int every) {
+  Table table("Queries lit from the left, (-0.6, 0.1, 0.8), examples from (0.3, 0.4, 0.85)",
+              {"class", "light", "error", "of mean", "of nearest", "normals", "cpu s"});
+  for (const char* name : {"heads", "hands", "bodies"}) {
+    const auto all = open(name), lit = open(name);
+    lit->set_light({{-0.6, 0.1, 0.8}, 0.35});
+    const int n = (all->size() + every - 1) / every;
+    for (const int what : {0, 1, 2}) {
+      DepthOptions options;
+      options.update_views = options.align = false;
+      options.update_light = what == 1;
+      Score s;
+      for (int k = 0; k < all->size(); k += every)
+        measure(what == 2 ? *lit : *all, k, {0, 0}, options, 1. / n, s, lit.get());
+      table.row({name,
+                 what == 0   ? "not searched"
+                 : what == 1 ? "searched"
+                             : "known",
+                 share(s.ours.offset), text(s.ours.offset / s.mean.offset), text(s.ours.offset / s.nearest.offset),
+                 text(s.ours.angle), text(s.cpu)});
     }
-    queries += cv::countNonZero(images[k].mask);
   }
-  for (const bool exact : {false, true})
-    table.row({exact ? "exact" : "kd-tree, propagated", text(squares[exact] / queries),
-               text(squares[exact] / squares[1]), text(cpu[exact] / queries * 1e6)});
 }
 
 }  // namespace
@@ -319,6 +425,7 @@ int main(int argc, char** argv) {
   const int every = std::max(1, argc > 2 ? std::atoi(argv[2]) : 1);
   if (what.empty() || what == "speed") speed();
   if (what.empty() || what == "search") search();
+  if (what.empty() || what == "light") light(every);
   if (what.empty() || what == "accuracy") accuracy(every);
   if (what.empty() || what == "views") views(every);
   if (what.empty() || what == "sizes") sizes(every);
