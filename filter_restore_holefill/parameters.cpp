@@ -77,8 +77,10 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
   list.push_back(flag("FitToRim", o.fit_to_rim, "Fit the model to the scan",
                       "Bends the model smoothly until it meets the surface around the flaw or hole, its details kept. "
                       "Without it the model is pasted as it is, as in the thesis."));
-  list.push_back(integer("Blend", o.blend, 1, 1000, "Blend so many models",
-                         "So many of the candidates, fitted, are averaged where they agree. 1 takes the best alone."));
+  list.push_back(
+      integer("Blend", o.blend, 1, 1000, "Blend so many models",
+              "Of so many of the candidates, the likeliest mixture for the surface around the flaw or hole is "
+              "taken. 1 takes the best alone, as in the thesis; quicker."));
   add_search(list);
   return list;
 }

@@ -2,70 +2,82 @@
 #include "database/blend.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "database/fit_to_rim.h"
-#include "database/matching.h"
-#include "geometry/attributes.h"
 #include "geometry/parallel.h"
 
 namespace parts {
 namespace {
 
 /// The base in the shape of each other model it could be brought onto.
-std::vector<std::vector<Vec3>> shapes_of(const Mesh& base, const std::vector<Mesh>& others, const BlendOptions& options,
+std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, double size, int threads,
                                          Progress& progress) {
-  std::vector<Fitted> fitted(others.size());
+  Mesh base;
+  base.vertices = models[0].fitted, base.faces = models[0].mesh.faces;
+  const int others = int(models.size()) - 1;
+  std::vector<std::vector<Vec3>> shapes(models.size());
+  shapes[0] = models[0].mesh.vertices;
   FitOptions fit;
-  fit.size = options.size;
-  fit.rigid = false;
-  fit.finest = 0.12;
+  fit.rigid = fit.robust = false;
   fit.threads = 1;
   // In bands of the cores, so that cancelling waits for one band only.
-  const int band = thread_count(options.threads);
-  for (std::size_t first = 0; first < others.size(); first += std::size_t(band)) {
-    progress.at(0.9 * double(first) / double(others.size()));
-    const long count = std::min<long>(band, long(others.size() - first));
-    parallel_for(count, options.threads, [&](long begin, long end) {
-      for (long i = begin; i < end; ++i) {
+  const int band = thread_count(threads);
+  for (int first = 0; first < others; first += band) {
+    progress.at(0.4 + 0.5 * first / others);
+    parallel_for(std::min(band, others - first), threads, [&](long begin, long end) {
+      for (long i = first + begin + 1; i < first + end + 1; ++i) {
         Progress silent;
-        fitted[first + std::size_t(i)] = fit_to_rim(base, others[first + std::size_t(i)], {}, fit, silent);
+        Mesh other;
+        other.vertices = models[i].fitted, other.faces = models[i].mesh.faces;
+        const std::vector<char> whole;
+        const FitTarget there(other, whole, other.bounds(), size);
+        const Fitted onto = fit_to_rim(base, there, fit, silent);
+        if (!(onto.share > 0.6 && onto.rms_after < 0.05 * size)) continue;
+        shapes[i] = onto.vertices;
+        int hint = 0;
+        for (Vec3& p : shapes[i]) {
+          const FaceHit hit = there.closest()(p, hint);
+          for (int k = 0; k < 3; ++k) {
+            const int v = other.faces[hit.face][k];
+            p += hit.barycentric[k] * (models[i].mesh.vertices[v] - models[i].fitted[v]);
+          }
+        }
       }
     });
   }
-  std::vector<std::vector<Vec3>> shapes;
-  for (const Fitted& f : fitted)
-    if (f.share > 0.6 && f.rms_after < 0.05 * options.size) shapes.push_back(f.vertices);
+  shapes.erase(std::remove_if(shapes.begin(), shapes.end(), [](const auto& s) { return s.empty(); }), shapes.end());
   return shapes;
 }
 
 }  // namespace
 
-Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan, const std::vector<char>& flaw,
-                     const BlendOptions& options, Progress& progress) {
+Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& target, int threads, Progress& progress) {
+  const double size = target.size();
+  const Mesh& base = models[0].mesh;
   Blended out{base.vertices, 1};
-  std::vector<std::vector<Vec3>> shapes = shapes_of(base, others, options, progress);
-  if (shapes.empty()) return out;
-  shapes.push_back(base.vertices);
+  const std::vector<std::vector<Vec3>> shapes = shapes_of(models, size, threads, progress);
   const int n = base.vertex_count(), k = int(shapes.size());
+  if (k < 2) return out;
   out.models = k;
   std::vector<Vec3> mean(n, Vec3::Zero());
   for (const auto& s : shapes)
     for (int v = 0; v < n; ++v) mean[v] += s[v] / k;
 
-  Matching match(base, scan, flaw, options.size, options.threads);
+  Matching match(base, target, true, threads);
   std::vector<Vec3> now = mean;
   constexpr int kRounds = 6;
   constexpr double kNoise = 0.02;  // of the size: what no blend of the models explains
   constexpr double kObservations = 100;
   for (int round = 0; round < kRounds; ++round) {
     progress.at(0.9 + 0.1 * round / kRounds);
-    const Targets t = match(now, 0.25 * options.size, 1);
+    const Targets t = match(now, 0.25 * size, 0);
     double sum = 0;
     for (double w : t.weight) sum += w;
     if (!(sum > 0)) break;
     // Vertices beside each other say the same: they count as so many independent ones.
-    const double scale = kObservations / sum / std::pow(kNoise * options.size, 2);
+    const double scale = kObservations / sum / std::pow(kNoise * size, 2);
     Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(k, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k), row(k);
     for (int v = 0; v < n; ++v) {

@@ -3,14 +3,15 @@
 
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "database/matching.h"
 #include "geometry/progress.h"
 
 namespace parts {
 
-struct BlendOptions {
-  double size = 0;  ///< of the region, world units
-  int threads = 0;  ///< 0 = all cores; the result does not depend on it
+/// A model in two poses.
+struct PosedModel {
+  Mesh mesh;                 ///< rigidly placed in the scan; every vertex belongs to a face
+  std::vector<Vec3> fitted;  ///< its vertices, fitted to the scan around the flaw or hole
 };
 
 struct Blended {
@@ -23,12 +24,11 @@ struct Blended {
 /// that their mean and differences make, the likeliest given the scan around
 /// the flaw or hole is taken (a ridge regression on the distances to it, as in
 /// Blanz and Vetter's morphable models). What lies over the hole follows.
-/// Models that the base cannot be brought onto are left out.
-/// @param base    the best model, rigidly placed; every vertex belongs to a face
-/// @param others  placed likewise
-/// @param flaw    per face of the scan: 1 = damaged; empty = none is
+/// Corresponding points are found between the fitted poses, which are alike
+/// around the hole; the shapes are those of the rigid ones.
+/// @param models  the first is the base, the best
+/// @param threads  0 = all cores; the result does not depend on it
 /// @throws Cancelled
-Blended blend_models(const Mesh& base, const std::vector<Mesh>& others, const Mesh& scan, const std::vector<char>& flaw,
-                     const BlendOptions& options, Progress& progress);
+Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& target, int threads, Progress& progress);
 
 }  // namespace parts

@@ -4,7 +4,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
-#include "database/matching.h"
 #include "database/smooth_field.h"
 
 namespace parts {
@@ -32,30 +31,37 @@ void apply_similarity(std::vector<Vec3>& from, const Targets& to, bool scale) {
 
 }  // namespace
 
-Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, const FitOptions& options,
-                  Progress& progress) {
+Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& options, Progress& progress) {
   Fitted fitted;
   fitted.vertices = model.vertices;
-  const double size = options.size > 0 ? options.size : model.bounds().diagonal().norm() / 2;
-  Matching match(model, scan, flaw, size, options.threads);
-  if (match.empty() || model.faces.empty()) return fitted;
+  const double size = target.size();
+  if (target.empty() || model.faces.empty()) return fitted;
 
-  constexpr double kFlawRigid = 0.25, kFlawLength = 0.3;
-  Targets targets = match(fitted.vertices, 0.5 * size, kFlawRigid);
+  // What a difference of normals counts, of the size: mouths find mouths, though other surface is nearer.
+  constexpr double kNormals = 0.2;
+  Matching match(model, target, options.robust, options.threads);
+  constexpr int kRigidSteps = 20, kRigidVertices = 800;
+  const int stride = options.rigid ? std::max(1, model.vertex_count() / kRigidVertices) : 1;
+  Targets targets = match(fitted.vertices, 0.5 * size, 0, stride);
   fitted.rms_before = targets.rms, fitted.share = targets.share;
-  constexpr int kRigidSteps = 20;
   for (int step = 0; options.rigid && step < kRigidSteps; ++step) {
     progress.at(0.3 * step / kRigidSteps);
+    const std::vector<Vec3> before = fitted.vertices;
     apply_similarity(fitted.vertices, targets, options.scale && step >= kRigidSteps / 4);
-    targets = match(fitted.vertices, 0.5 * size, kFlawRigid);
+    double moved = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) moved = std::max(moved, (fitted.vertices[v] - before[v]).norm());
+    const bool last = step + 1 == kRigidSteps || (step > kRigidSteps / 4 && moved < 1e-3 * size);
+    targets = match(fitted.vertices, 0.5 * size, 0, last ? 1 : stride);
+    if (last) break;
   }
   if (options.smooth) {
+    match.ask_back(fitted.vertices, 0.5 * size, targets);
     Mesh start;
     start.vertices = fitted.vertices, start.faces = model.faces;
     SmoothField field(start);
     // From the whole region's size down to its details.
     std::vector<double> lengths;
-    for (double l : {1.0, 1.0, 0.5, 0.5, 0.25, 0.25, 0.12, 0.12, 0.06, 0.06})
+    for (double l : {1.0, 0.5, 0.25, 0.12, 0.06, 0.06})
       if (l >= options.finest) lengths.push_back(l);
     for (std::size_t step = 0; step < lengths.size(); ++step) {
       progress.at(0.3 + 0.7 * double(step) / double(lengths.size()));
@@ -68,10 +74,10 @@ Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& 
       for (std::size_t v = 0; v < u.size(); ++v)
         fitted.vertices[v] = start.vertices[v] + u[v], moved += u[v].squaredNorm();
       fitted.moved = std::sqrt(moved / double(u.size()));
-      // Data of weight w are smoothed over length / w^(1/4): flaws count for their coarse shape only.
-      const double next = lengths[std::min(step + 1, lengths.size() - 1)];
-      targets = match(fitted.vertices, std::max(0.1, 0.5 * lengths[step]) * size,
-                      std::min(1.0, std::pow(next / kFlawLength, 4)));
+      const double farthest = std::max(0.1, 0.5 * lengths[step]) * size;
+      const double normals = step + 2 < lengths.size() ? kNormals * size : 0;
+      targets = match(fitted.vertices, farthest, 0, 1, normals);
+      match.ask_back(fitted.vertices, farthest, targets);
     }
   }
   fitted.rms_after = targets.rms, fitted.share = targets.share;

@@ -3,16 +3,16 @@
 
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "database/matching.h"
 #include "geometry/progress.h"
 
 namespace parts {
 
 struct FitOptions {
-  double size = 0;       ///< of the region, world units: what is smooth, near and far; 0 = the model's half diagonal
   bool rigid = true;     ///< a similarity first, then the smooth field
   bool scale = true;     ///< the similarity may change the size
   bool smooth = true;    ///< the smooth field; false: only the similarity
+  bool robust = true;    ///< what does not match counts less; false: all of the model is to come to lie on the target
   double finest = 0.06;  ///< the smallest detail that the field follows, of the size
   int threads = 0;       ///< 0 = all cores; the result does not depend on it
 };
@@ -31,10 +31,7 @@ struct Fitted {
 /// field carries those displacements on over the flaw, coarse to fine. The
 /// model's details ride on it.
 /// @param model  every vertex belongs to a face
-/// @param flaw   per face of the scan: 1 = damaged; only its coarse shape is
-///               followed, where the model agrees with it. Empty: all is good.
 /// @throws Cancelled
-Fitted fit_to_rim(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, const FitOptions& options,
-                  Progress& progress);
+Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& options, Progress& progress);
 
 }  // namespace parts

@@ -16,32 +16,65 @@ struct Targets {
   double share = 0;            ///< of the vertices that lie over good surface, those that have a counterpart
 };
 
+/// The part of a scan that models are fitted to.
+class FitTarget {
+ public:
+  /// @param scan   kept by reference
+  /// @param flaw   kept by reference; per face of the scan, 1 = damaged; empty = none is
+  /// @param near   where it matters
+  /// @param size   of the region, world units
+  FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box& near, double size);
+
+  bool empty() const { return closest_.empty(); }
+  double size() const { return size_; }
+  bool flawed(int face) const { return !flaw_.empty() && flaw_[face]; }
+  const ClosestFace& closest() const { return closest_; }
+  const std::vector<Sample>& rim() const { return rim_; }  ///< good vertices near its borders
+
+  /// Of the target's points the one nearest in place and normal together.
+  struct Alike {
+    Sample sample;
+    int face = -1;  ///< a face it lies on
+    bool border = false;
+  };
+  /// @param normals  what a difference of normals counts, world units
+  std::vector<Alike> most_alike(const std::vector<Sample>& points, double normals, int threads) const;
+
+ private:
+  const std::vector<char>& flaw_;
+  double size_;
+  ClosestFace closest_;
+  std::vector<Sample> rim_;
+  std::vector<Alike> points_;
+};
+
 /// Pairs the vertices of a model with the nearest points of a scan.
 class Matching {
  public:
-  /// @param model, scan, flaw  kept by reference; flaw: per face of the scan, 1 = damaged; empty = none is
-  /// @param size   of the region, world units
-  Matching(const Mesh& model, const Mesh& scan, const std::vector<char>& flaw, double size, int threads);
-
-  bool empty() const { return closest_.empty(); }
+  /// @param model, target  kept by reference
+  Matching(const Mesh& model, const FitTarget& target, bool robust, int threads)
+      : model_(model), target_(target), robust_(robust), threads_(threads) {}
 
   /// Pairs farther apart than `farthest`, on the scan's border or on a side
   /// that faces away are none; of the rest, those that are out of line count
-  /// less (Geman and McClure's estimator). A vertex that sees only the scan's
-  /// border is asked for by the scan's vertices that see it: a rim stands out.
+  /// less (Geman and McClure's estimator), if `robust`.
   /// @param at           the model's vertices now
   /// @param flaw_weight  of what lies on damaged faces
-  Targets operator()(const std::vector<Vec3>& at, double farthest, double flaw_weight);
+  /// @param stride       > 1: only every so many-th vertex is paired
+  /// @param normals      > 0: not the nearest point, but the one nearest in place
+  ///                     and normal, of which a difference counts so much, world units
+  Targets operator()(const std::vector<Vec3>& at, double farthest, double flaw_weight, int stride = 1,
+                     double normals = 0);
+
+  /// A vertex that sees only the scan's border is asked for by the scan's
+  /// vertices that see it: a rim stands out. @param targets  of the call before
+  void ask_back(const std::vector<Vec3>& at, double farthest, Targets& targets) const;
 
  private:
-  void ask_back(const Mesh& moved, double farthest, double spread, Targets& t) const;
-
   const Mesh& model_;
-  const std::vector<char>& flaw_;
-  std::vector<Sample> rim_;  ///< good vertices of the scan near its borders
-  ClosestFace closest_;
-  double size_;
-  double first_spread_ = 0;  ///< how far model and scan are usually apart, before they are fitted
+  const FitTarget& target_;
+  double spread_ = 0, first_spread_ = 0;  ///< how far model and scan are usually apart: now, before they are fitted
+  bool robust_;
   int threads_;
 };
 

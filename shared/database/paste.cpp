@@ -37,27 +37,6 @@ class RimDistance {
 
 double mean_edge(const Mesh& mesh, const Loop& rim) { return loop_length(mesh, rim) / rim.size(); }
 
-/// The model's part that lies beyond the scan's borders.
-Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loop>& rims, double edge,
-                      const PasteOptions& options) {
-  const ClosestFace on_scan(scan), on_model(model);
-  const RimDistance to_rim(scan, rims);
-  const double gap = 0.4 * edge;
-  ClipField field;
-  field.value = [&](const Vec3& p) {
-    const FaceHit hit = on_scan(p);
-    const double d = to_rim(p);
-    const bool covered = !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(on_model(p).normal) > 0;
-    return (covered ? -d : d) - gap;
-  };
-  field.crosses = [&](const Mesh& m, int f) {
-    const Box b = m.face_box(f);
-    return to_rim(b.center()) <= gap + b.diagonal().norm();
-  };
-  field.max_edge = edge;
-  return clip(model, std::vector<signed char>(model.faces.size(), 0), field, options.threads);
-}
-
 /// Per vertex the number of its component, faces joined by vertices.
 std::vector<int> vertex_components(const Mesh& mesh) {
   DisjointSets sets(mesh.vertex_count());
@@ -65,6 +44,62 @@ std::vector<int> vertex_components(const Mesh& mesh) {
   std::vector<int> component(mesh.vertices.size());
   for (int v = 0; v < mesh.vertex_count(); ++v) component[v] = sets.find(v);
   return component;
+}
+
+/// Faces of the model that seem to lie on the scan but in the midst of others
+/// that do not: the scan's own lower lip, say, within the upper one that is missing.
+std::vector<char> enclosed(const Mesh& model, const std::vector<char>& covered) {
+  DisjointSets sets(model.vertex_count());
+  const auto same = [&](int a, int b) {
+    if (covered[a] && covered[b]) sets.unite(a, b);
+  };
+  long beyond = 0;
+  for (const Triangle& f : model.faces) {
+    same(f[0], f[1]), same(f[1], f[2]), same(f[2], f[0]);
+    beyond += !covered[f[0]] && !covered[f[1]] && !covered[f[2]];
+  }
+  std::vector<long> count(model.vertices.size(), 0);
+  for (int v = 0; v < model.vertex_count(); ++v)
+    if (covered[v]) ++count[sets.find(v)];
+  constexpr double kSmall = 0.1;  // of what lies beyond the border
+  std::vector<char> flags(model.faces.size(), 0);
+  for (int f = 0; f < model.face_count(); ++f)
+    for (int v : model.faces[f]) flags[f] |= covered[v] && double(count[sets.find(v)]) < kSmall * double(beyond);
+  return flags;
+}
+
+/// The model's part that lies beyond the scan's borders.
+/// @param gap  how far from them it ends, world units
+Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loop>& rims, double edge, double gap,
+                      const PasteOptions& options) {
+  const ClosestFace on_scan(scan), on_model(model);
+  const RimDistance to_rim(scan, rims);
+  const auto covers = [&](const FaceHit& hit, const Vec3& normal) {
+    return !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(normal) > 0;
+  };
+  std::vector<char> covered(model.vertices.size(), 0);
+  {
+    std::vector<Vec3> normals(model.vertices.size(), Vec3::Zero());
+    for (const Triangle& f : model.faces) {
+      const Vec3 n = (model.vertices[f[1]] - model.vertices[f[0]]).cross(model.vertices[f[2]] - model.vertices[f[0]]);
+      for (int v : f) normals[v] += n;
+    }
+    int hint = 0;
+    for (int v = 0; v < model.vertex_count(); ++v) covered[v] = covers(on_scan(model.vertices[v], hint), normals[v]);
+  }
+  const std::vector<char> island = enclosed(model, covered);
+  ClipField field;
+  field.value = [&](const Vec3& p) {
+    const FaceHit hit = on_scan(p), own = on_model(p);
+    const double d = to_rim(p);
+    return (!island[own.face] && covers(hit, own.normal) ? -d : d) - gap;
+  };
+  field.crosses = [&](const Mesh& m, int f) {
+    const Box b = m.face_box(f);
+    return to_rim(b.center()) <= gap + b.diagonal().norm();
+  };
+  field.max_edge = edge;
+  return clip(model, std::vector<signed char>(model.faces.size(), 0), field, options.threads);
 }
 
 /// Keeps the components with flag 1 (by the number of vertex_components).
@@ -162,9 +197,8 @@ Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Lo
   return j;
 }
 
-}  // namespace
-
-Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands,
+/// @param away  how far from the rim the model is to end, in edges of the rim
+Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands, double away,
              const PasteOptions& options) {
   Pasted out;
   // Loose pieces: out of the way at first, and back where the patch does not cover them.
@@ -182,9 +216,9 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   const bool any_loose = std::find(loose.begin(), loose.end(), 1) != loose.end();
   if (any_loose) without(loose);
 
-  const double edge = mean_edge(scan, rim), max_gap = std::max(3 * edge, 0.5 * options.tolerance);
+  const double edge = mean_edge(scan, rim), max_gap = std::max(3 * edge, 0.5 * options.tolerance) + away * edge;
   std::vector<Loop> rims = find_rims(scan);
-  Clipped patch = beyond_border(scan, model, rims, edge, options);
+  Clipped patch = beyond_border(scan, model, rims, edge, away * edge, options);
   keep_facing(patch, scan, rim, max_gap);
   if (patch.mesh.faces.empty()) return out;
   if (any_loose) {
@@ -222,6 +256,19 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   out.mesh = std::move(j.mesh);
   out.face_from_model = std::move(j.tag);
   return out;
+}
+
+}  // namespace
+
+Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOptions& options) {
+  // As near as can be; where that leaves splinters that do not join, farther off.
+  Pasted first;
+  for (double away : {0.4, 1.2, 2.4}) {
+    Pasted p = paste(scan, model, rim, away, options);
+    if (p.closed) return p;
+    if (away == 0.4) first = std::move(p);
+  }
+  return first;
 }
 
 }  // namespace parts

@@ -165,7 +165,7 @@ std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options)
   for (const Region& r : regions) length.push_back(loop_length(scan, r.rims[0]));
   std::vector<int> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return length[a] < length[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return length[a] > length[b]; });
   std::vector<Region> sorted;
   for (int i : order) sorted.push_back(std::move(regions[i]));
   return sorted;

@@ -40,7 +40,7 @@ std::vector<Loop> find_rims(const Mesh& scan);
 /// @throws UserError  nothing is selected, the box is none, or holds no surface
 std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options);
 
-/// The holes to be filled, one region each, the shortest rim first.
+/// The holes to be filled, one region each, the longest rim first.
 /// @throws UserError  there is no hole where the options say
 std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options);
 

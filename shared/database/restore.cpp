@@ -9,26 +9,34 @@
 #include "database/flaw.h"
 #include "database/paste.h"
 #include "geometry/attributes.h"
+#include "geometry/parallel.h"
 #include "geometry/prepare.h"
 #include "geometry/topology.h"
 
 namespace parts {
 namespace {
 
+constexpr double kAround = 1.0;  // of the region's size
+
 Vec3 center_of(const Mesh& m, int f) { return (m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3; }
 
-/// What of a model can matter: the region and as much around it.
-Mesh surroundings(const Mesh& model, const Region& region) {
+/// How far around a region models and scan are compared.
+Box around(const Region& region, double share) {
   Box box = region.box;
-  box.min().array() -= region.size(), box.max().array() += region.size();
+  box.min().array() -= share * region.size(), box.max().array() += share * region.size();
+  return box;
+}
+
+/// What of a model can matter.
+Mesh surroundings(const Mesh& model, const Region& region) {
+  const Box box = around(region, kAround);
   std::vector<char> in(model.faces.size());
   for (int f = 0; f < model.face_count(); ++f) in[f] = box.intersects(model.face_box(f));
   return take_faces(model, in);
 }
 
 /// Turns a model over if most of it faces the other way than the scan beside it.
-void agree_on_sides(Mesh& model, const Mesh& scan, double near) {
-  const ClosestFace on_scan(scan);
+void agree_on_sides(Mesh& model, const ClosestFace& on_scan, double near) {
   double balance = 0;
   for (int f = 0; f < model.face_count(); ++f) {
     const Vec3 n = (model.corner(f, 1) - model.corner(f, 0)).cross(model.corner(f, 2) - model.corner(f, 0));
@@ -38,7 +46,15 @@ void agree_on_sides(Mesh& model, const Mesh& scan, double near) {
   if (balance < 0) flip_orientation(model);
 }
 
-/// One model on its way into the scan.
+/// A model brought to the scan: rigidly, then smoothly.
+struct Candidate {
+  bool done = false;
+  PosedModel posed;
+  Fitted fitted;  ///< without its vertices, which posed has
+  bool fits() const { return fitted.share > 0.6 && !posed.mesh.faces.empty(); }
+};
+
+/// What is pasted into the scan.
 struct Fit {
   int model = -1;
   Mesh mesh;
@@ -56,8 +72,9 @@ class Mender {
   Restored fill();
 
  private:
-  Mesh rigidly_placed(int model, const std::vector<char>& flaw, Fitted& fitted) const;
-  Fit fit(int model, const std::vector<char>& flaw) const;
+  void bring(Candidate& candidate, int model, const FitTarget& target) const;
+  void bring_first(int count, const FitTarget& target);
+  Fit fit(int model, const FitTarget& target);
   PasteOptions paste_options() const;
   /// Pastes into a scan with a hole. @param whole  the scan's face numbers before, for the report
   /// The published cut: compose() with these faces of the scan kept, and those
@@ -72,54 +89,77 @@ class Mender {
   const std::vector<PlacedModel>& models_;
   const RestoreOptions& options_;
   Progress& progress_;
+  std::vector<Candidate> candidates_;  ///< of each model, once it was asked for
 };
 
-Mesh Mender::rigidly_placed(int model, const std::vector<char>& flaw, Fitted& fitted) const {
-  Mesh mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
-  if (mesh.faces.empty()) return mesh;
-  agree_on_sides(mesh, scan_, 0.5 * region_.size());
+void Mender::bring(Candidate& candidate, int model, const FitTarget& target) const {
+  candidate.done = true;
+  Mesh& mesh = candidate.posed.mesh;
+  mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
+  if (mesh.faces.empty()) return;
+  agree_on_sides(mesh, target.closest(), 0.5 * region_.size());
   FitOptions o;
-  o.size = region_.size();
+  o.threads = 1;
   o.rigid = options_.refine;
   o.scale = options_.allow_scale;
   o.smooth = false;
-  o.threads = options_.threads;
   Progress silent;
-  fitted = fit_to_rim(mesh, scan_, flaw, o, silent);
-  mesh.vertices = fitted.vertices;
-  return mesh;
+  candidate.fitted = fit_to_rim(mesh, target, o, silent);
+  mesh.vertices = candidate.fitted.vertices;
+  if (options_.fit_to_rim) {
+    const double before = candidate.fitted.rms_before;
+    o.rigid = false, o.smooth = true;
+    candidate.fitted = fit_to_rim(mesh, target, o, silent);
+    candidate.fitted.rms_before = before;
+  }
+  candidate.posed.fitted = std::move(candidate.fitted.vertices);
 }
 
-Fit Mender::fit(int model, const std::vector<char>& flaw) const {
+/// Brings the first models, as far as they were not brought yet.
+void Mender::bring_first(int count, const FitTarget& target) {
+  candidates_.resize(models_.size());
+  count = std::min(count, int(models_.size()));
+  std::vector<int> missing;
+  for (int m = 0; m < count; ++m)
+    if (!candidates_[m].done) missing.push_back(m);
+  // In bands of the cores, so that cancelling waits for one band only.
+  const std::size_t band = std::size_t(thread_count(options_.threads));
+  for (std::size_t first = 0; first < missing.size(); first += band) {
+    progress_.at(0.4 * double(first) / double(missing.size()));
+    parallel_for(long(std::min(band, missing.size() - first)), options_.threads, [&](long begin, long end) {
+      for (long i = begin; i < end; ++i) bring(candidates_[missing[first + i]], missing[first + i], target);
+    });
+  }
+}
+
+Fit Mender::fit(int model, const FitTarget& target) {
   Fit f;
   f.model = model;
-  f.mesh = rigidly_placed(model, flaw, f.fitted);
-  if (f.mesh.faces.empty()) return f;
-  if (options_.blend > 1) {
-    std::vector<Mesh> others;
-    for (int m = 0; m < int(models_.size()) && int(others.size()) + 1 < options_.blend; ++m) {
-      if (m == model) continue;
-      Fitted unused;
-      Mesh other = rigidly_placed(m, flaw, unused);
-      if (!other.faces.empty()) others.push_back(std::move(other));
-      progress_.at(0.0);
+  const bool blend = options_.fit_to_rim && options_.blend > 1;
+  bring_first(std::max(model + 1, blend ? options_.blend : 1), target);
+  const Candidate& own = candidates_[model];
+  f.mesh = own.posed.mesh, f.fitted = own.fitted;
+  if (f.mesh.faces.empty() || target.empty()) return f;
+  f.mesh.vertices = own.posed.fitted;
+  if (blend) {
+    std::vector<PosedModel> posed{own.posed};
+    for (int m = 0; m < int(candidates_.size()) && int(posed.size()) < options_.blend; ++m)
+      if (const Candidate& c = candidates_[m];
+          m != model && c.done && c.fits() && c.fitted.rms_after < 0.05 * target.size())
+        posed.push_back(c.posed);
+    Blended blended = blend_models(posed, target, options_.threads, progress_);
+    if (blended.models > 1) {
+      f.blended = blended.models;
+      f.mesh.vertices = std::move(blended.vertices);
+      FitOptions o;
+      o.rigid = false;
+      o.threads = options_.threads;
+      const double before = f.fitted.rms_before;
+      Progress silent;
+      f.fitted = fit_to_rim(f.mesh, target, o, silent);
+      f.fitted.rms_before = before;
+      f.mesh.vertices = f.fitted.vertices;
     }
-    BlendOptions o;
-    o.size = region_.size();
-    o.threads = options_.threads;
-    Blended blended = blend_models(f.mesh, others, scan_, flaw, o, progress_);
-    f.mesh.vertices = std::move(blended.vertices);
-    f.blended = blended.models;
-  }
-  if (options_.fit_to_rim) {
-    FitOptions o;
-    o.size = region_.size();
-    o.rigid = false;
-    o.threads = options_.threads;
-    const double before = f.fitted.rms_before;
-    f.fitted = fit_to_rim(f.mesh, scan_, flaw, o, progress_);
-    f.fitted.rms_before = before;
-    f.mesh.vertices = f.fitted.vertices;
   }
   if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
   return f;
@@ -237,9 +277,11 @@ Restored Mender::thesis_cut(const Fit& fit, const std::vector<char>& keep,
 
 Restored Mender::fill() {
   Restored out;
+  const std::vector<char> no_flaw;
+  const FitTarget target(scan_, no_flaw, around(region_, 2 * kAround), region_.size());
   for (int m = 0; m < int(models_.size()); ++m) {
     progress_.at(double(m) / double(models_.size()));
-    const Fit f = fit(m, {});
+    const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
     if (options_.cut == Cut::Thesis)
       return thesis_cut(f, flaw_constraints(scan_, region_, options_.constraint_distance).keep, far_from_scan(f.mesh));
@@ -255,9 +297,10 @@ Restored Mender::restore() {
   const FlawConstraints constraints = flaw_constraints(scan_, region_, options_.constraint_distance);
   if (std::find(constraints.flaw.begin(), constraints.flaw.end(), 1) == constraints.flaw.end())
     throw UserError("No whole face of the scan lies in the region; enlarge the box around the flaw.");
+  const FitTarget target(scan_, constraints.flaw, around(region_, 2 * kAround), region_.size());
   for (int m = 0; m < int(models_.size()); ++m) {
     progress_.at(double(m) / double(models_.size()));
-    Fit f = fit(m, constraints.flaw);
+    const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
     if (options_.cut == Cut::Thesis) return thesis_cut(f, constraints.keep, near_centre(f.mesh));
     const std::vector<char> replaced = cut_out_flaw(scan_, region_, constraints, f.mesh);

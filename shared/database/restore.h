@@ -21,7 +21,7 @@ struct RestoreOptions {
   bool refine = true;                ///< ICP on the surface around the region, before anything else
   bool allow_scale = true;           ///< the ICP may change the model's size
   bool fit_to_rim = true;            ///< bend the model onto the scan around the region; false: as it is (thesis)
-  int blend = 1;                     ///< how many of the models are averaged, at most; 1 = the best alone
+  int blend = 5;                     ///< how many of the models are averaged, at most; 1 = the best alone
   Cut cut = Cut::Refined;            ///< Thesis: compose() with the constraints of Fig. 7
   int resolution = 0;                ///< of the thesis' cut
   SeamSmoothing smoothing;           ///< distance 0 = two edges of the rim

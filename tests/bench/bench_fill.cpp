@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Holes filled and scars restored on a class of heads, leave one out: the RMS
-// distance to the surface that was there, beside CGAL's fair fill.
-//   bench_fill [EVERY] [BLEND]   every so many-th head (4); models blended (1)
+// Holes filled and scars restored, leave one out: the RMS distance to the
+// surface that was there, beside MeshLab's Close Holes and Screened Poisson and
+// CGAL's triangulate, refine and fair.
+//   bench_fill [CLASS] [OPTION=VALUE ...]
+//     CLASS     heads, head_shapes or busts; all if none is named
+//     every=1   only every so many-th member
+//     case=     only cases whose name has this in it
+//     blend=    models blended; the filters' default if not given
+//     thesis=0  1: pasted as in the thesis too, not fitted
+//     rivals=1  0: without the others
+//     each=0    1: each member's error, too
+//     keep=     a folder for the meshes
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
@@ -13,44 +22,26 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <random>
 
+#include "bench/fill_cases.h"
 #include "bench/measure.h"
+#include "bench/rivals.h"
 #include "database/closest_face.h"
 #include "database/mend.h"
-#include "geometry/attributes.h"
 #include "geometry/mesh_io.h"
 #include "geometry/mlp_project.h"
-#include "geometry/prepare.h"
 
 namespace {
 
 using namespace parts;
+using namespace parts::bench;
 namespace fs = std::filesystem;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// A landmark of the JSON file beside a head.
-Vec3 landmark(const fs::path& head, const std::string& name) {
-  std::ifstream in(fs::path(head).replace_extension("json"));
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  const auto at = text.find('[', text.find('"' + name + '"'));
-  Vec3 p = Vec3::Zero();
-  if (at != std::string::npos) std::sscanf(text.c_str() + at, "[ %lf, %lf, %lf", &p[0], &p[1], &p[2]);
-  return p;
-}
-
-double rms(const std::vector<Vec3>& truth, const Mesh& mesh) {
-  const ClosestFace closest(mesh);
-  double sum = 0;
-  for (const Vec3& p : truth) sum += std::pow(closest(p).distance, 2);
-  return std::sqrt(sum / double(truth.size()));
-}
-
-/// All holes with their middle in the box, triangulated, refined and faired.
-Mesh cgal_fill(const Mesh& scan, const Box& box) {
+/// All holes with their rim's start in the box, triangulated, refined and faired.
+Mesh fair_fill(const Mesh& scan, const Box& box) {
   namespace pmp = CGAL::Polygon_mesh_processing;
   std::vector<Kernel::Point_3> points;
   std::vector<std::array<std::size_t, 3>> faces;
@@ -80,118 +71,177 @@ Mesh cgal_fill(const Mesh& scan, const Box& box) {
   return out;
 }
 
-/// Dents the surface and roughens it; the touched faces are selected.
-Mesh scarred(const Mesh& whole, const Vec3& at, double radius, unsigned seed, std::vector<Vec3>& truth) {
-  Mesh scan = whole;
-  update_normals(scan);
-  std::mt19937 random(seed);
-  const auto noise = [&] { return double(random()) / 4294967296.0 - 0.5; };
-  scan.face_selected.assign(scan.faces.size(), 0);
-  std::vector<char> touched(scan.vertices.size(), 0);
-  for (int v = 0; v < scan.vertex_count(); ++v) {
-    const double r = (whole.vertices[v] - at).norm() / radius;
-    if (r >= 1) continue;
-    const double fall = std::pow(1 - r * r, 2);
-    scan.vertices[v] += fall * (-0.12 * scan.vertex_normal[v].cast<double>() + 0.05 * Vec3(noise(), noise(), noise()));
-    touched[v] = 1, truth.push_back(whole.vertices[v]);
+/// Of the distances from what was there: all of it, and what shows from outside.
+struct Error {
+  double all = 0, outer = 0;
+};
+
+Error error_of(const Damaged& d, const Mesh& mesh) {
+  const ClosestFace closest(mesh);
+  double sum = 0, outer = 0;
+  long count = 0;
+  for (std::size_t i = 0; i < d.truth.size(); ++i) {
+    const double square = std::pow(closest(d.truth[i]).distance, 2);
+    sum += square;
+    if (d.outer[i]) outer += square, ++count;
   }
-  for (int f = 0; f < scan.face_count(); ++f)
-    for (int v : scan.faces[f]) scan.face_selected[f] |= touched[v];
-  return scan;
+  return {std::sqrt(sum / double(d.truth.size())), std::sqrt(outer / double(std::max(1L, count)))};
 }
 
-struct Case {
-  const char *name, *landmark;
-  Vec3 offset;
-  double radius;
-  bool hole;
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? NAN : (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
+}
+
+class Bench {
+ public:
+  Bench(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+      const std::string word = argv[i];
+      const auto equals = word.find('=');
+      if (equals == std::string::npos)
+        only_ = word;
+      else
+        value_[word.substr(0, equals)] = word.substr(equals + 1);
+    }
+    fs::create_directories(work_);
+  }
+  bool wanted(const std::string& name) const { return only_.empty() || only_ == name; }
+  const std::string& work() const { return work_; }
+  void measure(const MemberClass& members);
+
+ private:
+  std::string value(const std::string& name, const std::string& usual) const {
+    const auto at = value_.find(name);
+    return at == value_.end() ? usual : at->second;
+  }
+  void keep(const std::string& name, const Mesh& mesh) const {
+    if (const std::string folder = value("keep", ""); !folder.empty()) {
+      fs::create_directories(folder);
+      write_mesh(mesh, folder + "/" + name + ".ply");
+    }
+  }
+  void measure(const MemberClass& members, const DamageCase& what, Table& holes, Table& flaws) const;
+  Mesh mend(const MemberClass& members, std::size_t which, const DamageCase& what, const Damaged& damaged,
+            bool fit) const;
+
+  std::string only_, work_ = (fs::current_path() / "fill").string();
+  std::map<std::string, std::string> value_;
 };
-const Case kCases[] = {{"nose removed", "nose_tip", Vec3(0, 0, 0), 0.26, true},
-                       {"crown removed", "crown", Vec3(0, 0, 0), 0.8, true},
-                       {"nose broken", "nose_tip", Vec3(0, 0, 0), 0.28, false},
-                       {"cheek scarred", "nose_tip", Vec3(0.35, -0.1, -0.25), 0.28, false}};
+
+Mesh Bench::mend(const MemberClass& members, std::size_t which, const DamageCase& what, const Damaged& damaged,
+                 bool fit) const {
+  MlpProject project;
+  for (std::size_t i = 0; i < members.members.size(); ++i)
+    if (const std::string& file = members.members[i].file; i != which)
+      project.meshes.push_back({fs::path(file).stem().string(), file, Eigen::Matrix4d::Identity()});
+  const std::string mlp = work_ + "/" + members.name + "_without_" + std::to_string(which) + ".mlp";
+  write_mlp(project, mlp);
+  Progress silent;
+  const ModelDatabase database(mlp, silent);
+  MendOptions options;
+  options.fill = what.kind == DamageCase::Hole;
+  options.region = damaged.region;
+  if (const int blend = std::stoi(value("blend", "0")); blend > 0) options.restore.blend = blend;
+  options.search.candidates = std::max(5, options.restore.blend);
+  options.restore.fit_to_rim = fit;
+  if (!fit) options.restore.blend = 1;
+  return mend_scan(damaged.scan, database, options, silent).mesh;
+}
+
+void Bench::measure(const MemberClass& members, const DamageCase& what, Table& holes, Table& flaws) const {
+  const bool hole = what.kind == DamageCase::Hole, rivals = hole && value("rivals", "1") == "1";
+  const bool thesis = value("thesis", "0") == "1";
+  std::vector<double> close, fair, poisson, before, after, pasted, outer, ratio, outer_ratio, seconds;
+  int failed = 0;
+  for (std::size_t i = 0; i < members.members.size(); i += std::size_t(std::stoi(value("every", "1")))) {
+    const Member& member = members.members[i];
+    const Damaged d = damage(member, what, unsigned(i));
+    const double unit = member.unit / 100;
+    const std::string name = fs::path(member.file).stem().string() + "_" + what.name;
+    keep(name + "_scan", d.scan);
+    Error base;
+    if (hole) {
+      const auto other = [&](const char* by, std::vector<double>& errors, const std::function<Mesh()>& run) {
+        try {
+          const Mesh mesh = run();
+          keep(name + "_" + by, mesh);
+          const Error e = error_of(d, mesh);
+          errors.push_back(e.all / unit);
+          if (base.all == 0 || e.all < base.all) base.all = e.all;
+          if (base.outer == 0 || e.outer < base.outer) base.outer = e.outer;
+        } catch (const std::exception& e) {
+          std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
+        }
+      };
+      other("fair", fair, [&] { return fair_fill(d.scan, d.region.box); });
+      if (rivals) {
+        other("close", close, [&] { return close_holes(d.scan, work_); });
+        other("poisson", poisson, [&] { return screened_poisson(d.scan, work_); });
+      }
+    } else {
+      base = error_of(d, d.scan);
+    }
+    const auto left = [&](bool fit) {
+      try {
+        const Mesh mesh = mend(members, i, what, d, fit);
+        keep(name + (fit ? "_ours" : "_thesis"), mesh);
+        return error_of(d, mesh);
+      } catch (const UserError& e) {
+        std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
+        failed += fit;
+        return base;
+      }
+    };
+    const Stopwatch watch;
+    const Error ours = left(true);
+    seconds.push_back(watch.cpu());
+    before.push_back(base.all / unit), after.push_back(ours.all / unit), outer.push_back(ours.outer / unit);
+    ratio.push_back(ours.all / base.all), outer_ratio.push_back(ours.outer / base.outer);
+    if (thesis) pasted.push_back(left(false).all / unit);
+    if (value("each", "0") == "1")
+      std::fprintf(stderr, "%s: %.3g of %.3g\n", name.c_str(), ours.all / unit, base.all / unit);
+  }
+  const auto all = [](const std::vector<double>& v) { return v.empty() ? std::string("-") : text(median(v)); };
+  std::vector<std::string> row{what.name, std::to_string(ratio.size())};
+  if (hole)
+    for (const auto& v : {close, fair, poisson}) row.push_back(all(v));
+  else
+    row.push_back(all(before));
+  const double target = hole ? 0.35 : 0.3;
+  for (const auto& v : {pasted, after, outer, ratio}) row.push_back(all(v));
+  row.push_back(verdict(median(ratio) <= target));
+  row.push_back(all(outer_ratio));
+  row.push_back(text(*std::max_element(ratio.begin(), ratio.end())));
+  row.push_back(std::to_string(failed)), row.push_back(all(seconds));
+  (hole ? holes : flaws).row(row);
+}
+
+void Bench::measure(const MemberClass& members) {
+  if (members.members.size() < 4) {
+    std::printf("Skipped: no %s in '%s'.\n", members.name.c_str(), PARTS_DATA);
+    return;
+  }
+  const std::vector<std::string> rest{"As in the thesis", "Ours",  "Outside", "Of it",      "",
+                                      "Outside",          "Worst", "Failed",  "Processor s"};
+  std::vector<std::string> holes{"Holes", "Members", "Close Holes", "Fair fill", "Poisson"};
+  std::vector<std::string> flaws{"Flaws", "Members", "Damage"};
+  holes.insert(holes.end(), rest.begin(), rest.end()), flaws.insert(flaws.end(), rest.begin(), rest.end());
+  holes[8] = "Of the best", flaws[6] = "Of the damage";
+  const std::string unit = ", RMS distance to what was there, hundredths of the eyes' distance";
+  Table hole_table(members.name + unit, holes), flaw_table(members.name + unit, flaws);
+  for (const DamageCase& c : kDamageCases)
+    if (std::string(c.name).find(value("case", "")) != std::string::npos) measure(members, c, hole_table, flaw_table);
+  hole_table.note("Medians. Of the best: of the least error of the three, a member. Target: 0.35.");
+  hole_table.note("Outside: only what shows from outside, so without nostrils and mouth.");
+  flaw_table.note("Target: 0.3 of the damage.");
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int every = argc > 1 ? std::max(1, std::atoi(argv[1])) : 4, blend = argc > 2 ? std::atoi(argv[2]) : 1;
-  const fs::path folder = fs::path(PARTS_DATA) / "heads";
-  std::vector<fs::path> heads;
-  if (fs::exists(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".obj") heads.push_back(entry.path());
-  if (heads.size() < 4) {
-    std::printf("Skipped: no heads in %s.\n", folder.c_str());
-    return 0;
-  }
-  std::sort(heads.begin(), heads.end());
-  const fs::path work = fs::current_path() / "fill_models";
-  fs::create_directories(work);
-  bench::Table table("RMS distance to what was there, " + std::to_string(blend) + " blended",
-                     {"case", "heads", "fair fill or damage", "as in the thesis", "fitted", "median ratio", "largest",
-                      "failed", "seconds"});
-  for (const Case& c : kCases) {
-    std::vector<double> base, pasted, fitted, ratio, seconds;
-    int failed = 0;
-    for (std::size_t q = 0; q < heads.size(); q += std::size_t(every)) {
-      Mesh whole = prepare(read_mesh(heads[q].string())).mesh;
-      whole.wedges.clear(), whole.textures.clear();
-      MlpProject project;
-      for (std::size_t i = 0; i < heads.size(); ++i)
-        if (i != q)
-          project.meshes.push_back({heads[i].stem().string(), heads[i].string(), Eigen::Matrix4d::Identity()});
-      const std::string mlp = (work / ("without_" + std::to_string(q) + ".mlp")).string();
-      write_mlp(project, mlp);
-      const Vec3 at = landmark(heads[q], c.landmark) + c.offset;
-      MendOptions options;
-      options.fill = c.hole;
-      options.search.any_rotation = false;
-      options.search.candidates = std::max(5, blend);
-      std::vector<Vec3> truth;
-      Mesh scan;
-      double before = 0;
-      if (c.hole) {
-        std::vector<char> stays(whole.faces.size()), gone(whole.faces.size());
-        for (int f = 0; f < whole.face_count(); ++f)
-          gone[f] = ((whole.corner(f, 0) + whole.corner(f, 1) + whole.corner(f, 2)) / 3 - at).norm() < c.radius,
-          stays[f] = !gone[f];
-        scan = take_faces(whole, stays);
-        const Mesh removed = take_faces(whole, gone);
-        truth = removed.vertices;
-        options.region.by = RegionBy::Box;
-        options.region.box = removed.bounds();
-        options.region.margin = 0.1;
-        Box box = removed.bounds();
-        before = rms(truth, cgal_fill(scan, Box(box.min().array() - 0.1, box.max().array() + 0.1)));
-      } else {
-        scan = scarred(whole, at, c.radius, unsigned(q), truth);
-        before = rms(truth, scan);
-      }
-      Progress silent;
-      const ModelDatabase database(mlp, silent);
-      const auto left = [&](bool fit) {
-        options.restore.fit_to_rim = fit;
-        options.restore.blend = fit ? blend : 1;
-        try {
-          return rms(truth, mend_scan(scan, database, options, silent).mesh);
-        } catch (const UserError& e) {
-          if (fit) ++failed, std::fprintf(stderr, "%s, %s: %s\n", c.name, heads[q].stem().c_str(), e.what());
-          return before;
-        }
-      };
-      const bench::Stopwatch watch;
-      fitted.push_back(left(true));
-      seconds.push_back(watch.wall());
-      pasted.push_back(left(false));
-      base.push_back(before), ratio.push_back(fitted.back() / before);
-    }
-    const auto median = [](std::vector<double> v) {
-      std::sort(v.begin(), v.end());
-      return bench::text(v[v.size() / 2]);
-    };
-    table.row({c.name, std::to_string(ratio.size()), median(base), median(pasted), median(fitted), median(ratio),
-               bench::text(*std::max_element(ratio.begin(), ratio.end())), std::to_string(failed), median(seconds)});
-  }
-  table.note("Fair fill (holes): CGAL's triangulate_refine_and_fair_hole. Damage (scars): the scan as it was.");
-  table.note("Targets: 0.35 of the fair fill, 0.3 of the damage.");
+  Bench bench(argc, argv);
+  if (bench.wanted("heads")) bench.measure(heads(PARTS_DATA));
+  if (bench.wanted("head_shapes")) bench.measure(head_shapes(PARTS_DATA));
+  if (bench.wanted("busts")) bench.measure(busts(bench.work(), 12));
 }
