@@ -6,11 +6,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "align/align.h"
-#include "colorize/hidden_colors.h"
 #include "colorize/kept_colors.h"
-#include "geometry/attributes.h"
 #include "geometry/error.h"
-#include "geometry/parallel.h"
 #include "render/surface_color.h"
 #include "synthesis/pyramid.h"
 #include "voxel/memory.h"
@@ -18,14 +15,9 @@
 namespace parts {
 namespace {
 
-using Vec3f = Eigen::Vector3f;
-
-constexpr int kComparison = 96;             // pixels of views by which models are compared
-constexpr int kSearched = 256;              // of the finest level at which patches are searched
-constexpr int kCoarsest = 64;               // of the coarsest level, at most
-constexpr double kFinest = 1e12;            // pixels a face: the finest level of a texture
-constexpr Color kNone{200, 200, 200, 255};  // where a mesh has no colour
-constexpr float kClearlySeen = 0.1f;        // see ViewSheet::look(): below, hidden_colors take over
+constexpr int kComparison = 96;  // pixels of views by which models are compared
+constexpr int kSearched = 256;   // of the finest level at which patches are searched
+constexpr int kCoarsest = 64;    // of the coarsest level, at most
 
 /// Side by side; all of one height.
 PatchImage beside(const std::vector<PatchImage>& images) {
@@ -182,13 +174,6 @@ void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
                     " MB are free; choose a smaller Width and Height, fewer Views or fewer Examples.");
 }
 
-std::vector<Vec3f> normals_of(const Mesh& mesh) {
-  Mesh m;
-  m.vertices = mesh.vertices, m.faces = mesh.faces;
-  update_normals(m);
-  return m.vertex_normal;
-}
-
 /// Whether nearly all that is seen are front faces.
 bool faces_outwards(const ClassModel& query, double frame, const ColorizeMeshOptions& options) {
   long front = 0, all = 0;
@@ -214,59 +199,7 @@ bool faces_outwards(const ClassModel& query, double frame, const ColorizeMeshOpt
   return double(front) > 0.95 * double(all);
 }
 
-/// Colours of the vertices: what views see, and completed by the model.
-void color_vertices(const Mesh& posed, const ClassModel& like, int threads, MeshColors& colors) {
-  const std::vector<Vec3f> normals = colors.oriented ? normals_of(posed) : std::vector<Vec3f>();
-  colors.vertex.assign(posed.vertices.size(), Vec3f(0.5f, 128 / 255.f, 128 / 255.f));
-  std::vector<char> known(posed.vertices.size(), 0);
-  parallel_for(posed.vertex_count(), threads, [&](long begin, long end) {
-    for (long v = begin; v < end; ++v) {
-      const Vec3 n = normals.empty() ? Vec3::Zero() : Vec3(normals[v].cast<double>());
-      known[v] = colors.sheet.look(colors.planes, 0, posed.vertices[v], n, colors.vertex[v].data()) > kClearlySeen;
-    }
-  });
-  double area = 0, seen = 0;
-  for (const Triangle& f : posed.faces) {
-    const double a =
-        (posed.vertices[f[1]] - posed.vertices[f[0]]).cross(posed.vertices[f[2]] - posed.vertices[f[0]]).norm();
-    if (!std::isfinite(a)) continue;
-    area += a, seen += a * (known[f[0]] + known[f[1]] + known[f[2]]) / 3;
-  }
-  colors.seen = area > 0 ? seen / area : 0;
-  Mesh there;
-  there.faces = posed.faces;
-  for (const Vec3& v : posed.vertices) there.vertices.push_back(v * like.size + like.center);
-  complete_colors(there, known, like, colors.vertex, threads);
-}
-
-/// The others' colours are made to go with those that stay.
-void match_kept(const Mesh& posed, int threads, MeshColors& colors) {
-  std::vector<Vec3f> own(posed.vertices.size(), Vec3f::Zero());
-  std::vector<char> kept(posed.vertices.size(), 0);
-  for (int f = 0; f < posed.face_count(); ++f)
-    for (int k = 0; k < 3 && colors.keep[f]; ++k) {
-      const int v = posed.faces[f][k];
-      own[v] = to_ycbcr(surface_color(posed, colors.textures, f, Vec3f::Unit(k), kFinest, kNone));
-      kept[v] = 1;
-    }
-  colors.correction = corrections(posed.vertices, colors.vertex, own, kept, threads);
-}
-
 }  // namespace
-
-Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
-  if (!keep.empty() && keep[face]) return to_ycbcr(surface_color(mesh, textures, face, b, kFinest, kNone));
-  const Triangle& t = mesh.faces[face];
-  const Vec3 p = double(b[0]) * posed[t[0]] + double(b[1]) * posed[t[1]] + double(b[2]) * posed[t[2]];
-  const Vec3 n =
-      oriented ? Vec3((posed[t[1]] - posed[t[0]]).cross(posed[t[2]] - posed[t[0]]).normalized()) : Vec3::Zero();
-  const Vec3f mean = b[0] * vertex[t[0]] + b[1] * vertex[t[1]] + b[2] * vertex[t[2]];
-  Vec3f direct = mean;
-  const float share = std::min(1.f, sheet.look(planes, 0, p, n, direct.data()) / kClearlySeen);
-  Vec3f color = share * direct + (1 - share) * mean;
-  if (!correction.empty()) color += b[0] * correction[t[0]] + b[1] * correction[t[1]] + b[2] * correction[t[2]];
-  return color;
-}
 
 MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMeshOptions& given, Progress& progress) {
   ColorizeMeshOptions options = given;
@@ -315,51 +248,9 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
   result.example = found.example;
   result.oriented = faces_outwards(query, frame, options);
   progress.stage("Colouring the surface", 90, 100);
-  color_vertices(query.mesh, models.get(like), options.threads, result);
-  if (!options.keep.empty()) {
-    result.keep = options.keep, result.textures = query.textures;
-    match_kept(query.mesh, options.threads, result);
-  }
-  result.posed = std::move(query.mesh.vertices);
+  result.keep = options.keep;
+  color_surface(query, models.get(like), options.threads, result);
   return result;
-}
-
-BakedTexture bake_texture(const Mesh& mesh, const std::vector<Wedges>& wedges, int size, const MeshColors& colors,
-                          int threads) {
-  const TexelMap map = map_texels(wedges, size);
-  std::vector<cv::Mat> planes;
-  for (int k = 0; k < 3; ++k) planes.push_back(cv::Mat::zeros(size, size, CV_32F));
-  BakedTexture baked;
-  baked.mask = cv::Mat::zeros(size, size, CV_8U);
-  parallel_for(size, threads, [&](long begin, long end) {
-    for (int y = int(begin); y < end; ++y)
-      for (int x = 0; x < size; ++x) {
-        const std::size_t at = std::size_t(y) * size + x;
-        if (map.face[at] < 0) continue;
-        const Vec3f color = colors.at(mesh, map.face[at], map.barycentric[at]);
-        for (int k = 0; k < 3; ++k) planes[k].at<float>(y, x) = color[k];
-        baked.mask.at<uchar>(y, x) = 255;
-      }
-  });
-  baked.color = to_color(planes);
-  return baked;
-}
-
-std::vector<Color> vertex_colors(const MeshColors& colors) {
-  std::vector<cv::Mat> planes;
-  const int n = int(colors.vertex.size());
-  for (int k = 0; k < 3; ++k) {
-    planes.emplace_back(std::max(n, 1), 1, CV_32F, cv::Scalar(0));
-    for (int v = 0; v < n; ++v)
-      planes.back().at<float>(v) = colors.vertex[v][k] + (colors.correction.empty() ? 0 : colors.correction[v][k]);
-  }
-  const cv::Mat bgr = to_color(planes);
-  std::vector<Color> out(std::size_t(n), Color{});
-  for (int v = 0; v < n; ++v) {
-    const cv::Vec3b& c = bgr.at<cv::Vec3b>(v);
-    out[v] = {c[2], c[1], c[0], 255};
-  }
-  return out;
 }
 
 }  // namespace parts
