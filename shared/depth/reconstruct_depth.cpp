@@ -128,7 +128,7 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
     const auto near =
         std::find_if(views.begin(), views.end(), [&](const View& v) { return angle_between(v, *found) < same_view; });
     views = {near != views.end() ? *near : *found};
-    search_light(views.front());
+    if (angle_between(views.front(), options.views.front()) > 2 * same_view) search_light(views.front());
   }
 
   progress.stage("Choosing examples", 35, 40);

@@ -93,15 +93,4 @@ Camera orthographic_camera(const Eigen::Matrix3d& rotation, const Box& box, int 
   return camera;
 }
 
-Camera pinhole_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height, double focal,
-                      double margin) {
-  Camera camera = framing(rotation, width, height);
-  camera.focal = focal;
-  const double half = (1 - 2 * margin) / 2 * std::min(width, height);
-  // The sphere's silhouette is a tangent cone: sin of its half angle = radius / distance.
-  const double distance = radius_of(box) * std::hypot(focal, half) / half;
-  camera.eye = center_of(box) + distance * rotation.row(2).transpose();
-  return camera;
-}
-
 }  // namespace parts

@@ -52,8 +52,4 @@ Eigen::Matrix3d view_rotation(const View& view, const Vec3& up, const Vec3& fron
 Camera orthographic_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height,
                            double margin = 0.05);
 
-/// Frames the box's sphere with a pinhole camera of that focal length (pixels).
-Camera pinhole_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height, double focal,
-                      double margin = 0.05);
-
 }  // namespace parts

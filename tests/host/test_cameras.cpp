@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "host/cameras.h"
+#include "support/cameras.h"
 
 namespace parts::host {
 namespace {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "support/cameras.h"
 
 namespace parts {
 namespace {

@@ -12,6 +12,7 @@
 #include "geometry/topology.h"
 #include "raster/raster_io.h"
 #include "render/rasterize.h"
+#include "support/cameras.h"
 #include "support/shapes.h"
 
 namespace parts {

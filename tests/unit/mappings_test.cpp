@@ -15,6 +15,7 @@
 #include "mappings/examples.h"
 #include "mappings/mlp_camera.h"
 #include "raster/raster_io.h"
+#include "support/cameras.h"
 #include "support/shapes.h"
 
 namespace parts {

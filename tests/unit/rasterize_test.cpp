@@ -9,6 +9,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "support/cameras.h"
 #include "support/shapes.h"
 
 namespace parts {
