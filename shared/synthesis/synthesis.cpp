@@ -172,7 +172,8 @@ class Optimizer {
 
   // The coarser estimate and the voted detail (thesis 4.3.1). What this level's
   // windows say of the coarse part counts as much as the coarser level: windows
-  // that were matched again with more detail know better where they lie.
+  // that were matched again with more detail know better where they lie. On still
+  // finer levels their steps from example to example would show as lumps.
   cv::Mat proposal(const Votes& votes, int s) const {
     cv::Mat mean;
     if (coarse_.empty()) {
@@ -184,7 +185,8 @@ class Optimizer {
     cv::pyrDown(extend(value, votes.weight > 0), half);
     cv::divide(votes.band, votes.weight, mean);
     mean.setTo(0, votes.weight <= 0);
-    return expand(0.5 * (coarse_[s] + half), mean.size()) + mean;
+    const bool corrects = levels_ - 1 - level_ <= 2;
+    return expand(corrects ? cv::Mat(0.5 * (coarse_[s] + half)) : coarse_[s], mean.size()) + mean;
   }
 
   // The M step: towards the voted planes, as far as the objective gains. For
