@@ -13,7 +13,7 @@ namespace {
 
 /// The base in the shape of each other model it could be brought onto.
 std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, double size, int threads,
-                                         Progress& progress) {
+                                         std::vector<double>& weight, Progress& progress) {
   Mesh base;
   base.vertices = models[0].fitted, base.faces = models[0].mesh.faces;
   const int others = int(models.size()) - 1;
@@ -47,6 +47,10 @@ std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, 
       }
     });
   }
+  double sum = 0;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    if (!shapes[i].empty()) weight.push_back(std::pow(std::max(models[i].rms, 1e-4 * size), -4)), sum += weight.back();
+  for (double& w : weight) w /= sum;
   shapes.erase(std::remove_if(shapes.begin(), shapes.end(), [](const auto& s) { return s.empty(); }), shapes.end());
   return shapes;
 }
@@ -57,13 +61,14 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
   const double size = target.size();
   const Mesh& base = models[0].mesh;
   Blended out{base.vertices, 1};
-  const std::vector<std::vector<Vec3>> shapes = shapes_of(models, size, threads, progress);
+  std::vector<double> weight;
+  const std::vector<std::vector<Vec3>> shapes = shapes_of(models, size, threads, weight, progress);
   const int n = base.vertex_count(), k = int(shapes.size());
   if (k < 2) return out;
   out.models = k;
   std::vector<Vec3> mean(n, Vec3::Zero());
-  for (const auto& s : shapes)
-    for (int v = 0; v < n; ++v) mean[v] += s[v] / k;
+  for (int i = 0; i < k; ++i)
+    for (int v = 0; v < n; ++v) mean[v] += weight[i] * shapes[i][v];
 
   Matching match(base, target, true, threads);
   std::vector<Vec3> now = mean;
@@ -82,15 +87,15 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k), row(k);
     for (int v = 0; v < n; ++v) {
       if (!(t.weight[v] > 0)) continue;
-      for (int i = 0; i < k; ++i) row[i] = (shapes[i][v] - mean[v]).dot(t.normal[v]) / std::sqrt(double(k - 1));
+      for (int i = 0; i < k; ++i) row[i] = (shapes[i][v] - mean[v]).dot(t.normal[v]) * std::sqrt(weight[i]);
       const double w = scale * t.weight[v];
       normal.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
       right += w * (t.point[v] - mean[v]).dot(t.normal[v]) * row;
     }
-    const Eigen::VectorXd c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right) / std::sqrt(double(k - 1));
+    const Eigen::VectorXd c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
     for (int v = 0; v < n; ++v) {
       now[v] = mean[v];
-      for (int i = 0; i < k; ++i) now[v] += c[i] * (shapes[i][v] - mean[v]);
+      for (int i = 0; i < k; ++i) now[v] += c[i] * std::sqrt(weight[i]) * (shapes[i][v] - mean[v]);
     }
   }
   out.vertices = std::move(now);

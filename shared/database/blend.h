@@ -11,6 +11,7 @@ namespace parts {
 /// A model in two poses.
 struct PosedModel {
   Mesh mesh;                 ///< rigidly placed in the scan; every vertex belongs to a face
+  double rms = 0;            ///< distance to the scan around the flaw or hole in the rigid pose, world units
   std::vector<Vec3> fitted;  ///< its vertices, fitted to the scan around the flaw or hole
 };
 
@@ -25,7 +26,8 @@ struct Blended {
 /// the flaw or hole is taken (a ridge regression on the distances to it, as in
 /// Blanz and Vetter's morphable models). What lies over the hole follows.
 /// Corresponding points are found between the fitted poses, which are alike
-/// around the hole; the shapes are those of the rigid ones.
+/// around the hole; the shapes are those of the rigid ones. Models that are more
+/// like the scan around the hole count more.
 /// @param models  the first is the base, the best
 /// @param threads  0 = all cores; the result does not depend on it
 /// @throws Cancelled

@@ -110,6 +110,7 @@ void Mender::bring(Candidate& candidate, int model, const FitTarget& target) con
     const double before = candidate.fitted.rms_before;
     o.rigid = false, o.smooth = true;
     candidate.fitted = fit_to_rim(mesh, target, o, silent);
+    candidate.posed.rms = candidate.fitted.rms_before;
     candidate.fitted.rms_before = before;
   }
   candidate.posed.fitted = std::move(candidate.fitted.vertices);
