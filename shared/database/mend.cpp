@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "geometry/attributes.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/pinches.h"
 #include "geometry/prepare.h"
 
 namespace parts {
@@ -112,6 +114,39 @@ void log_region(const RestoreReport& r, const std::vector<Candidate>& found, con
 
 }  // namespace
 
+namespace {
+
+/// Without crumbs: small pieces, hardly more than a rim, that hung on the rest
+/// in vertices only.
+/// @param first  vertices from here on are copies
+Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first) {
+  constexpr int kMostFaces = 12;
+  DisjointSets sets(mesh.vertex_count());
+  for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+  std::vector<int> faces(mesh.vertices.size(), 0);
+  for (const Triangle& f : mesh.faces) ++faces[sets.find(f[0])];
+  std::vector<char> hung(mesh.vertices.size(), 0), keep;
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    for (int v : {copies[i], first + int(i)}) hung[sets.find(v)] = 1;
+  const int largest = *std::max_element(faces.begin(), faces.end());
+  for (const Triangle& f : mesh.faces) {
+    const int piece = sets.find(f[0]);
+    keep.push_back(!hung[piece] || faces[piece] > kMostFaces || faces[piece] == largest);
+  }
+  return take_faces(mesh, keep);
+}
+
+/// Fit for finding rims: where one touches itself in a vertex, as the teeth of a
+/// torn border do, its corners get vertices of their own.
+Mesh prepared(const Mesh& input) {
+  Mesh mesh = prepare(input).mesh;
+  const int first = mesh.vertex_count();
+  const std::vector<int> copies = split_pinches(mesh, std::vector<char>(mesh.vertices.size(), 1));
+  return copies.empty() ? mesh : without_crumbs(mesh, copies, first);
+}
+
+}  // namespace
+
 Mesh placed(Mesh mesh, const Eigen::Affine3d& placement) {
   const Eigen::Matrix3f turn = placement.linear().cast<float>();
   for (Vec3& v : mesh.vertices) v = placement * v;
@@ -121,7 +156,7 @@ Mesh placed(Mesh mesh, const Eigen::Affine3d& placement) {
 
 std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database, const MendOptions& options,
                                Progress& progress) {
-  const Mesh scan = prepare(input).mesh;
+  const Mesh scan = prepared(input);
   const std::vector<Region> regions = regions_of(scan, options);
   std::vector<Found> all;
   SearchMemory memory;
@@ -140,7 +175,7 @@ std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database,
 
 Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOptions& options, Progress& progress) {
   Mended out;
-  Mesh first = prepare(input).mesh;
+  Mesh first = prepared(input);
   std::vector<Region> regions = regions_of(first, options);
   out.regions = int(regions.size());
   if (options.fill) {

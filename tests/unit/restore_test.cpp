@@ -268,6 +268,31 @@ TEST(Mend, ClosesHolesTooSmallForAnyDetailWithoutASearch) {
   expect_closed_manifold(m.mesh, "sphere");
 }
 
+TEST(Mend, FillsAHoleWithATornRim) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("mend_torn_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  write_mesh(similar_bust()[0].mesh, (folder / "similar.ply").string());
+  // By one corner alone: teeth that hang together in vertices, and crumbs.
+  const Mesh whole = prepare(own_bust()).mesh;
+  const Vec3 at = bust_landmarks(random_bust(3)).nose_tip;
+  std::vector<char> stays(whole.faces.size());
+  for (int f = 0; f < whole.face_count(); ++f) stays[f] = (whole.corner(f, 0) - at).norm() > 0.2;
+  const Mesh scan = take_faces(whole, stays);
+  ASSERT_GT(check(scan).nonmanifold_vertices, 0);
+  Progress silent;
+  MendOptions options;
+  options.fill = true;
+  options.region = around_holes();
+  const ModelDatabase database(folder.string(), silent);
+  const Mended mended = mend_scan(scan, database, options, silent);
+  const MeshCheck c = check(mended.mesh);
+  EXPECT_TRUE(c.manifold());
+  EXPECT_EQ(c.boundary_edges, 0);
+  EXPECT_EQ(c.components, 1);
+  fs::remove_all(folder);
+}
+
 TEST(Region, OneForEachFlaw) {
   Mesh m = sphere();
   m.face_selected = faces_where(m, [](const Vec3& c) { return std::abs(c.x()) > 0.95; });
