@@ -59,8 +59,9 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
   std::vector<Parameter> list = query(scene, fill ? RegionBy::Holes : RegionBy::Selection, 5);
   list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
                         "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
-                        "or of the largest distance of the model from the scan (holes). The cut finds the rest; "
-                        "results hardly depend on it."));
+                        "or of the largest distance of the model from the scan (holes, with the cut of the "
+                        "thesis; otherwise the rim of a hole is the border). The cut finds the rest; results hardly "
+                        "depend on it."));
   list.push_back(flag("Refine", o.refine, "Refine the placement",
                       "Places the models once more by iterated closest points on the surface around the region."));
   list.push_back(allow_scale(o.allow_scale));

@@ -94,7 +94,7 @@ Typical typical(const std::vector<ColorExample>& examples) {
 PatchImage query_of(const cv::Mat& depth, const cv::Mat& mask, const Frame& frame, cv::Size size, double strength) {
   PatchImage query;
   query.planes.resize(4);
-  query.mask = mask;
+  query.mask = mask.clone();  // result.mask stays as it is
   cv::Mat full = extend(relief(depth, mask, 1), mask);
   if (frame.moved) {
     cv::warpAffine(full, full, frame.matrix, size, cv::INTER_LINEAR, cv::BORDER_REPLICATE);

@@ -127,6 +127,19 @@ TEST(ColorizeDepth, AnotherExposureIsHarmonizedAnotherBumpIsNot) {
   EXPECT_TRUE(r.harmonized.empty());
 }
 
+TEST(ColorizeDepth, ADepthThatLiesElsewhereKeepsItsPixels) {
+  Discs source = some_discs();
+  Progress silent;
+  Example query = disc("q", {3, -4});
+  cv::Mat small, depth(kSize, CV_32F, cv::Scalar(kNan));
+  cv::resize(query.depth, small, kSize / 2, 0, 0, cv::INTER_NEAREST);
+  small.copyTo(depth(cv::Rect({4, 6}, small.size())));  // half as large, in a corner of an image of the same size
+  const ColorizeResult r = colorize_depth(depth, source, quick(), silent);
+  EXPECT_TRUE(r.aligned);
+  EXPECT_EQ(cv::countNonZero((depth == depth) != r.mask), 0);
+  EXPECT_EQ(cv::countNonZero((r.example >= 0) != r.mask), 0);
+}
+
 TEST(ColorizeDepth, ExamplesThatDoNotGoTogetherAreLeftOut) {
   Example other = disc("other", {2, 0});
   cv::Mat half = other.mask.clone();
