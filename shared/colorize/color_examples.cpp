@@ -9,6 +9,7 @@
 #include <random>
 
 #include "geometry/error.h"
+#include "geometry/median.h"
 #include "raster/mask.h"
 
 namespace parts {
@@ -30,11 +31,6 @@ double relief_difference(const PatchImage& a, const PatchImage& b, bool centered
   squared = squared - cv::mean(squared, both)[0];
   squared = squared.mul(squared);
   return (cv::mean(squared, both)[0] * common + miss * (all - common)) / all;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

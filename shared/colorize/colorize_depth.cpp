@@ -6,17 +6,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/error.h"
+#include "geometry/median.h"
 #include "raster/mask.h"
 #include "raster/raster_io.h"
 #include "synthesis/pyramid.h"
 
 namespace parts {
 namespace {
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 double reach(const cv::Mat& mask) { return std::sqrt(double(cv::countNonZero(mask))); }
 

@@ -6,6 +6,7 @@
 
 #include "database/closest_face.h"
 #include "geometry/edges.h"
+#include "geometry/median.h"
 #include "mincut/max_flow.h"
 
 namespace parts {
@@ -45,12 +46,6 @@ class Depth {
   std::array<std::array<bool, 3>, 2> crossed_{};
   bool any_;
 };
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  std::nth_element(v.begin(), v.begin() + long(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 /// Faces of which a vertex would be left with several fans go too.
 void leave_no_pinch(const Mesh& scan, const std::vector<char>& keep, std::vector<char>& replaced) {

@@ -7,15 +7,11 @@
 
 #include "compose/loops.h"
 #include "geometry/attributes.h"
+#include "geometry/median.h"
 #include "geometry/parallel.h"
 
 namespace parts {
 namespace {
-
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + long(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 double robust(double distance, double spread) {
   const double r = distance / spread;

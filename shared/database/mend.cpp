@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "geometry/attributes.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/pinches.h"
 #include "geometry/prepare.h"
+#include "geometry/topology.h"
 
 namespace parts {
 namespace {
@@ -112,25 +112,20 @@ void log_region(const RestoreReport& r, const std::vector<Candidate>& found, con
   log("seam_length", r.seam_length), log("seam_gap", r.seam_gap);
 }
 
-}  // namespace
-
-namespace {
-
 /// Without crumbs: small pieces, hardly more than a rim, that hung on the rest
 /// in vertices only.
 /// @param first  vertices from here on are copies
 Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first) {
   constexpr int kMostFaces = 12;
-  DisjointSets sets(mesh.vertex_count());
-  for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+  const std::vector<int> component = vertex_components(mesh);
   std::vector<int> faces(mesh.vertices.size(), 0);
-  for (const Triangle& f : mesh.faces) ++faces[sets.find(f[0])];
+  for (const Triangle& f : mesh.faces) ++faces[component[f[0]]];
   std::vector<char> hung(mesh.vertices.size(), 0), keep;
   for (std::size_t i = 0; i < copies.size(); ++i)
-    for (int v : {copies[i], first + int(i)}) hung[sets.find(v)] = 1;
+    for (int v : {copies[i], first + int(i)}) hung[component[v]] = 1;
   const int largest = *std::max_element(faces.begin(), faces.end());
   for (const Triangle& f : mesh.faces) {
-    const int piece = sets.find(f[0]);
+    const int piece = component[f[0]];
     keep.push_back(!hung[piece] || faces[piece] > kMostFaces || faces[piece] == largest);
   }
   return take_faces(mesh, keep);

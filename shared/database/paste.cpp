@@ -37,15 +37,6 @@ class RimDistance {
 
 double mean_edge(const Mesh& mesh, const Loop& rim) { return loop_length(mesh, rim) / rim.size(); }
 
-/// Per vertex the number of its component, faces joined by vertices.
-std::vector<int> vertex_components(const Mesh& mesh) {
-  DisjointSets sets(mesh.vertex_count());
-  for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
-  std::vector<int> component(mesh.vertices.size());
-  for (int v = 0; v < mesh.vertex_count(); ++v) component[v] = sets.find(v);
-  return component;
-}
-
 /// Faces of the model that seem to lie on the scan but in the midst of others
 /// that do not: the scan's own lower lip, say, within the upper one that is missing.
 std::vector<char> enclosed(const Mesh& model, const std::vector<char>& covered) {

@@ -70,14 +70,13 @@ std::vector<Loop> find_rims(const Mesh& scan) {
 namespace {
 
 /// Not the outlines of crumbs: loose pieces that are hardly more than a rim.
-std::vector<Loop> without_crumbs(const Mesh& scan, std::vector<Loop> rims) {
-  DisjointSets sets(scan.vertex_count());
-  for (const Triangle& f : scan.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+std::vector<Loop> rims_of_surfaces(const Mesh& scan, std::vector<Loop> rims) {
+  const std::vector<int> component = vertex_components(scan);
   std::vector<int> faces(scan.vertices.size(), 0);
-  for (const Triangle& f : scan.faces) ++faces[sets.find(f[0])];
+  for (const Triangle& f : scan.faces) ++faces[component[f[0]]];
   const int largest = faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
   const auto crumb = [&](const Loop& rim) {
-    const int own = faces[sets.find(rim.vertices[0])];
+    const int own = faces[component[rim.vertices[0]]];
     return own <= rim.size() - 2 || (own <= 2 * rim.size() && own < largest);
   };
   rims.erase(std::remove_if(rims.begin(), rims.end(), crumb), rims.end());
@@ -129,7 +128,7 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
 
 std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options) {
   check_scan(scan);
-  const std::vector<Loop> rims = without_crumbs(scan, find_rims(scan));
+  const std::vector<Loop> rims = rims_of_surfaces(scan, find_rims(scan));
   if (rims.empty())
     throw UserError("The scan has no hole; choose a layer with an open border, or use Restore Surface.");
   const Box box = options.by == RegionBy::Box ? checked_box(scan, options) : Box();

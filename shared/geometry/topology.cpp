@@ -46,6 +46,14 @@ EdgeMap edge_map(const Mesh& mesh) {
   return map;
 }
 
+std::vector<int> vertex_components(const Mesh& mesh) {
+  DisjointSets sets(mesh.vertex_count());
+  for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+  std::vector<int> component(mesh.vertices.size());
+  for (int v = 0; v < mesh.vertex_count(); ++v) component[v] = sets.find(v);
+  return component;
+}
+
 std::vector<std::vector<int>> boundary_loops(const Mesh& mesh, const EdgeMap& map) {
   std::vector<std::vector<int>> loops;
   std::vector<char> seen(map.mate.size(), 0);

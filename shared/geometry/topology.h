@@ -26,6 +26,9 @@ EdgeMap edge_map(const Mesh& mesh);
 /// it bounds; one that ends at a non-manifold edge is given as far as it goes.
 std::vector<std::vector<int>> boundary_loops(const Mesh& mesh, const EdgeMap& map);
 
+/// Per vertex a number of its component, faces joined by vertices; not in a row.
+std::vector<int> vertex_components(const Mesh& mesh);
+
 /// What is wrong with a surface, counted.
 struct MeshCheck {
   int vertices = 0;  ///< that faces use

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 
+#include "bench/fill_cases.h"
 #include "bench/measure.h"
 #include "database/search.h"
 #include "geometry/attributes.h"
@@ -44,15 +45,6 @@ struct Task {
 Vec3 center_of(const Mesh& mesh, const std::function<double(const Vec3&)>& key) {
   return *std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
                            [&](const Vec3& a, const Vec3& b) { return key(a) < key(b); });
-}
-
-std::vector<std::string> files_of(const std::string& folder, const std::string& extension) {
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& e : fs::directory_iterator(folder, error))
-    if (e.path().extension() == extension) files.push_back(e.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 /// Models with the same vertices in the same order: a vertex of one, where the key is highest, is the place.

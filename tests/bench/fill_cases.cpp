@@ -20,15 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> files_of(const fs::path& folder, const std::string& extension) {
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& e : fs::directory_iterator(folder, error))
-    if (e.path().extension() == extension) files.push_back(e.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 /// A landmark of the JSON file beside a head.
 Vec3 landmark(const fs::path& head, const std::string& name) {
   std::ifstream in(fs::path(head).replace_extension("json"));
@@ -88,6 +79,15 @@ Mesh dented(const Mesh& whole, const Vec3& at, const DamageCase& c, double radiu
 }
 
 }  // namespace
+
+std::vector<std::string> files_of(const std::string& folder, const std::string& extension) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& e : fs::directory_iterator(folder, error))
+    if (e.path().extension() == extension) files.push_back(e.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 const std::vector<DamageCase> kDamageCases = {
     {"nose removed", "nose", Vec3(0, 0, 0), 0.45, DamageCase::Hole},

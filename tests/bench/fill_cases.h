@@ -24,6 +24,9 @@ struct MemberClass {
   std::vector<Member> members;
 };
 
+/// The files of a folder with that ending (".obj"), sorted; none if it is not there.
+std::vector<std::string> files_of(const std::string& folder, const std::string& extension);
+
 /// The heads of the optional data; landmarks are in a file beside each. Empty if they are not there.
 MemberClass heads(const std::string& data);
 /// The head shapes; they have no landmarks: the nose's tip is the foremost
