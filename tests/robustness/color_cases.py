@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rows of the table for filters that find colours."""
 import copy
+import itertools
 
 import numpy as np
 
@@ -19,10 +20,11 @@ def colorize_depth(case, folder):
     for i in range(3):
         shapes.write_ply(models / f"m{i}.ply", shapes.sphere().scaled(1 + i / 10))
     front, _ = rasters.sphere()
-    plain = dict(Depth=rasters.save_tif(folder / "query.tif", front), Database=models / "m0.ply", PatchSizes="5",
-                 ImageFile=folder / "colors.png")
+    plain = dict(Depth=rasters.save_tif(folder / "query.tif", front), Database=models / "m0.ply", PatchSizes="5")
+    number = itertools.count()
 
     def row(name, allowed=FINE, **values):
+        values = dict(dict(ImageFile=folder / f"colors{next(number)}.png"), **values)  # rows run side by side
         return case("colorize_depth", name, [], [template("colorize_depth", **dict(plain, **values))], allowed, False,
                     "made")
 
@@ -81,10 +83,11 @@ def colorize_mesh(case, folder):
         shapes.write_ply(folder / "eggs" / f"egg{i}.ply", painted(egg(1 + i / 10)))
     shapes.write_ply(folder / "grey" / "grey.ply", egg())
     (folder / "broken" / "broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
-    plain = dict(Database=folder / "eggs", PatchSizes="5", Width=40, Height=50, TextureSize=128,
-                 TextureFile=folder / "texture.png")
+    plain = dict(Database=folder / "eggs", PatchSizes="5", Width=40, Height=50, TextureSize=128)
+    number = itertools.count()
 
     def row(name, mesh=None, allowed=FINE, **values):
+        values = dict(dict(TextureFile=folder / f"texture{next(number)}.png"), **values)
         return case("colorize_mesh", name, [mesh or egg(1.05)],
                     [template("colorize_mesh", **dict(plain, **values))], allowed, False, "made")
 
