@@ -80,8 +80,8 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
                       "Without it the model is pasted as it is, as in the thesis."));
   list.push_back(
       integer("Blend", o.blend, 1, 1000, "Blend so many models",
-              "Of so many of the candidates, the likeliest mixture for the surface around the flaw or hole is "
-              "taken. 1 takes the best alone, as in the thesis; quicker."));
+              "Of so many of the most similar models, the likeliest mixture for the surface around the flaw or hole "
+              "is taken. 1 takes the best alone, as in the thesis; quicker."));
   add_search(list);
   return list;
 }

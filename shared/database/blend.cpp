@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "database/blend.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "database/fit_to_rim.h"
+#include "database/shape_prior.h"
 #include "geometry/parallel.h"
 
 namespace parts {
@@ -49,56 +49,69 @@ std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, 
   }
   double sum = 0;
   for (std::size_t i = 0; i < models.size(); ++i)
-    if (!shapes[i].empty()) weight.push_back(std::pow(std::max(models[i].rms, 1e-4 * size), -4)), sum += weight.back();
+    if (!shapes[i].empty()) weight.push_back(std::pow(std::max(models[i].rms, 1e-4 * size), -2)), sum += weight.back();
   for (double& w : weight) w /= sum;
   shapes.erase(std::remove_if(shapes.begin(), shapes.end(), [](const auto& s) { return s.empty(); }), shapes.end());
   return shapes;
 }
 
+/// So many of the vertices that are flagged, spread over the surface, denser near the centre.
+std::vector<int> spread(const std::vector<Vec3>& points, const std::vector<char>& flags, const FitTarget& target,
+                        int count) {
+  const int n = int(points.size());
+  std::vector<double> reach(n), away(n, 1e300);
+  for (int v = 0; v < n; ++v) reach[v] = 0.3 * target.size() + (points[v] - target.center()).norm();
+  std::vector<int> chosen;
+  int next = -1;
+  for (int v = 0; v < n; ++v)
+    if (flags[v] && (next < 0 || reach[v] < reach[next])) next = v;
+  while (next >= 0 && int(chosen.size()) < count) {
+    chosen.push_back(next);
+    const Vec3 last = points[next];
+    double farthest = 0;
+    next = -1;
+    for (int v = 0; v < n; ++v) {
+      if (!flags[v]) continue;
+      away[v] = std::min(away[v], (points[v] - last).norm());
+      if (const double d = away[v] / reach[v]; d > farthest) farthest = d, next = v;
+    }
+  }
+  return chosen;
+}
+
+constexpr double kNoise = 0.005;  // of the size: how well a scan is known
+
+/// What the good surface of a scan tells of a shape near it.
+std::vector<PlaneObservation> seen_on(const std::vector<Vec3>& now, const Targets& targets, const FitTarget& target) {
+  constexpr int kMost = 600;  // more of the same say nothing new
+  std::vector<char> matched;
+  for (double w : targets.weight) matched.push_back(w > 0.1);
+  std::vector<PlaneObservation> seen;
+  for (int v : spread(now, matched, target, kMost))
+    seen.push_back({v, targets.point[v], targets.normal[v], kNoise * target.size() / std::sqrt(targets.weight[v])});
+  return seen;
+}
+
 }  // namespace
 
 Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& target, int threads, Progress& progress) {
-  const double size = target.size();
   const Mesh& base = models[0].mesh;
   Blended out{base.vertices, 1};
   std::vector<double> weight;
-  const std::vector<std::vector<Vec3>> shapes = shapes_of(models, size, threads, weight, progress);
-  const int n = base.vertex_count(), k = int(shapes.size());
-  if (k < 2) return out;
-  out.models = k;
-  std::vector<Vec3> mean(n, Vec3::Zero());
-  for (int i = 0; i < k; ++i)
-    for (int v = 0; v < n; ++v) mean[v] += weight[i] * shapes[i][v];
-
+  const std::vector<std::vector<Vec3>> shapes = shapes_of(models, target.size(), threads, weight, progress);
+  if (shapes.size() < 2) return out;
+  out.models = int(shapes.size());
+  const ShapePrior prior(shapes, weight, target.size());
   Matching match(base, target, true, threads);
-  std::vector<Vec3> now = mean;
+  out.vertices = prior.mean();
   constexpr int kRounds = 6;
-  constexpr double kNoise = 0.02;  // of the size: what no blend of the models explains
-  constexpr double kObservations = 100;
   for (int round = 0; round < kRounds; ++round) {
     progress.at(0.9 + 0.1 * round / kRounds);
-    const Targets t = match(now, 0.25 * size, 0);
-    double sum = 0;
-    for (double w : t.weight) sum += w;
-    if (!(sum > 0)) break;
-    // Vertices beside each other say the same: they count as so many independent ones.
-    const double scale = kObservations / sum / std::pow(kNoise * size, 2);
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(k, k);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(k), row(k);
-    for (int v = 0; v < n; ++v) {
-      if (!(t.weight[v] > 0)) continue;
-      for (int i = 0; i < k; ++i) row[i] = (shapes[i][v] - mean[v]).dot(t.normal[v]) * std::sqrt(weight[i]);
-      const double w = scale * t.weight[v];
-      normal.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
-      right += w * (t.point[v] - mean[v]).dot(t.normal[v]) * row;
-    }
-    const Eigen::VectorXd c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    for (int v = 0; v < n; ++v) {
-      now[v] = mean[v];
-      for (int i = 0; i < k; ++i) now[v] += c[i] * std::sqrt(weight[i]) * (shapes[i][v] - mean[v]);
-    }
+    const Targets targets = match(out.vertices, 0.25 * target.size(), 1, kAlike * target.size());
+    const std::vector<PlaneObservation> seen = seen_on(out.vertices, targets, target);
+    if (seen.empty()) break;
+    out.vertices = prior.given(seen);
   }
-  out.vertices = std::move(now);
   progress.at(1);
   return out;
 }

@@ -37,12 +37,11 @@ Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& 
   const double size = target.size();
   if (target.empty() || model.faces.empty()) return fitted;
 
-  // What a difference of normals counts, of the size: mouths find mouths, though other surface is nearer.
-  constexpr double kNormals = 0.2;
   Matching match(model, target, options.robust, options.threads);
-  constexpr int kRigidSteps = 20, kRigidVertices = 800;
-  const int stride = options.rigid ? std::max(1, model.vertex_count() / kRigidVertices) : 1;
-  Targets targets = match(fitted.vertices, 0.5 * size, 0, stride);
+  constexpr int kRigidSteps = 20, kRigidVertices = 800, kCoarseVertices = 1500, kFineVertices = 4000;
+  const auto stride_for = [&](int vertices) { return std::max(1, model.vertex_count() / vertices); };
+  const int stride = options.rigid ? stride_for(kRigidVertices) : 1;
+  Targets targets = match(fitted.vertices, 0.5 * size, stride);
   fitted.rms_before = targets.rms, fitted.share = targets.share;
   for (int step = 0; options.rigid && step < kRigidSteps; ++step) {
     progress.at(0.3 * step / kRigidSteps);
@@ -51,7 +50,7 @@ Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& 
     double moved = 0;
     for (std::size_t v = 0; v < before.size(); ++v) moved = std::max(moved, (fitted.vertices[v] - before[v]).norm());
     const bool last = step + 1 == kRigidSteps || (step > kRigidSteps / 4 && moved < 1e-3 * size);
-    targets = match(fitted.vertices, 0.5 * size, 0, last ? 1 : stride);
+    targets = match(fitted.vertices, 0.5 * size, last ? 1 : stride);
     if (last) break;
   }
   if (options.smooth) {
@@ -61,7 +60,7 @@ Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& 
     SmoothField field(start);
     // From the whole region's size down to its details.
     std::vector<double> lengths;
-    for (double l : {1.0, 0.5, 0.25, 0.12, 0.06, 0.06})
+    for (double l : {0.7, 0.25, 0.08})
       if (l >= options.finest) lengths.push_back(l);
     for (std::size_t step = 0; step < lengths.size(); ++step) {
       progress.at(0.3 + 0.7 * double(step) / double(lengths.size()));
@@ -75,8 +74,10 @@ Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& 
         fitted.vertices[v] = start.vertices[v] + u[v], moved += u[v].squaredNorm();
       fitted.moved = std::sqrt(moved / double(u.size()));
       const double farthest = std::max(0.1, 0.5 * lengths[step]) * size;
-      const double normals = step + 2 < lengths.size() ? kNormals * size : 0;
-      targets = match(fitted.vertices, farthest, 0, 1, normals);
+      const int few = stride_for(step + 2 < lengths.size() ? kCoarseVertices : kFineVertices);
+      const double normals = step + 1 < lengths.size() ? kAlike * size : 0;
+      targets = match(fitted.vertices, farthest, few, normals);
+      for (double& w : targets.weight) w *= few;  // for the vertices that were left out
       match.ask_back(fitted.vertices, farthest, targets);
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "database/closest_face.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 #include "geometry/median.h"
 #include "mincut/max_flow.h"
@@ -46,6 +47,27 @@ class Depth {
   std::array<std::array<bool, 3>, 2> crossed_{};
   bool any_;
 };
+
+/// Pieces that the cut has left within what goes go too.
+void leave_no_island(const Mesh& scan, const std::vector<char>& keep, std::vector<char>& replaced) {
+  DisjointSets pieces(scan.face_count());
+  const std::vector<HalfEdge> edges = sorted_half_edges(scan);
+  for_each_mesh_edge(edges, [&](auto first, auto last) {
+    for (auto e = first + 1; e < last; ++e)
+      if (!replaced[first->face] && !replaced[e->face]) pieces.unite(first->face, e->face);
+  });
+  std::vector<char> kept(scan.faces.size(), 0), cut(scan.faces.size(), 0);
+  for (int f = 0; f < scan.face_count(); ++f)
+    if (keep[f]) kept[pieces.find(f)] = 1;
+  for_each_mesh_edge(edges, [&](auto first, auto last) {
+    for (auto e = first + 1; e < last; ++e) {
+      if (replaced[first->face] && !replaced[e->face]) cut[pieces.find(e->face)] = 1;
+      if (replaced[e->face] && !replaced[first->face]) cut[pieces.find(first->face)] = 1;
+    }
+  });
+  for (int f = 0; f < scan.face_count(); ++f)
+    if (const int piece = pieces.find(f); cut[piece] && !kept[piece]) replaced[f] = 1;
+}
 
 /// Faces of which a vertex would be left with several fans go too.
 void leave_no_pinch(const Mesh& scan, const std::vector<char>& keep, std::vector<char>& replaced) {
@@ -98,10 +120,10 @@ void leave_no_pinch(const Mesh& scan, const std::vector<char>& keep, std::vector
 }  // namespace
 
 FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double share) {
-  FlawConstraints c{std::vector<char>(scan.faces.size(), 0), region.flaw};
+  FlawConstraints c{std::vector<char>(scan.faces.size(), 0), region.flaw, region.flaw};
   const Depth depth(scan, region.box);
   const bool known = !region.flaw.empty();
-  c.flaw.resize(scan.faces.size(), 0);
+  c.flaw.resize(scan.faces.size(), 0), c.suspect.resize(scan.faces.size(), 0);
   const Vec3 center = region.box.center(), half = region.box.sizes() / 2;
   std::vector<double> away(scan.faces.size(), 1e300);  // from the centre
   double least = 1e300;
@@ -109,6 +131,7 @@ FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double 
     const bool inside = region.box.contains(scan.face_box(f));
     c.keep[f] = !(known && region.flaw[f]) && (!inside || depth(center_of(scan, f)) < share);
     if (!inside || known) continue;
+    c.suspect[f] = !c.keep[f];
     away[f] = (center_of(scan, f) - center).cwiseQuotient(half).norm();
     least = std::min(least, away[f]);
   }
@@ -161,6 +184,7 @@ std::vector<char> cut_out_flaw(const Mesh& scan, const Region& region, FlawConst
   std::vector<char> replaced(scan.faces.size());
   for (int f = 0; f < scan.face_count(); ++f)
     replaced[f] = !c.keep[f] && (c.flaw[f] || graph.what_segment(f, FlowGraph::SOURCE) == FlowGraph::SINK);
+  leave_no_island(scan, c.keep, replaced);
   leave_no_pinch(scan, c.keep, replaced);
   return replaced;
 }

@@ -7,8 +7,9 @@ namespace parts {
 
 /// The constraints of a restoration (thesis 3.3.1, Fig. 7a), per face of the scan.
 struct FlawConstraints {
-  std::vector<char> keep;  ///< must survive: outside the region or nearest its sides, and not selected
-  std::vector<char> flaw;  ///< must be replaced: selected; with a box nearest its centre
+  std::vector<char> keep;     ///< must survive: outside the region or nearest its sides, and not selected
+  std::vector<char> flaw;     ///< must be replaced: selected; with a box nearest its centre
+  std::vector<char> suspect;  ///< is not to be believed: selected; with a box all of it but what is kept
 };
 /// @param share  ConstraintDistance: of the region's half size, (0, 1)
 FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double share);

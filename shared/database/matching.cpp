@@ -27,7 +27,7 @@ std::vector<char> faces_near(const Mesh& scan, const Box& near) {
 }  // namespace
 
 FitTarget::FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box& near, double size)
-    : flaw_(flaw), size_(size), closest_(scan, faces_near(scan, near)) {
+    : flaw_(flaw), size_(size), center_(near.center()), closest_(scan, faces_near(scan, near)) {
   // Vertices on a border, and two rings of faces around it.
   std::vector<char> beside(scan.vertices.size(), 0), bad(scan.vertices.size(), 0);
   for (const auto& e : boundary_half_edges(scan)) beside[e[0]] = beside[e[1]] = 1;
@@ -117,8 +117,7 @@ void Matching::ask_back(const std::vector<Vec3>& at, double farthest, Targets& t
   }
 }
 
-Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, double flaw_weight, int stride,
-                             double normals) {
+Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, int stride, double normals) {
   const int n = int(at.size());
   Mesh moved;
   moved.vertices = at, moved.faces = model_.faces;
@@ -163,11 +162,7 @@ Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, doubl
   long good = 0;
   for (int v = 0; v < n; ++v) {
     good += over[v] && !flawed[v];
-    if (distance[v] < 0) continue;
-    if (flawed[v]) {
-      t.weight[v] = flaw_weight * robust(distance[v], first_spread_);
-      continue;
-    }
+    if (distance[v] < 0 || flawed[v]) continue;
     t.weight[v] = robust(distance[v], spread);
     sum += t.weight[v] * distance[v] * distance[v], weights += t.weight[v];
   }

@@ -7,6 +7,9 @@
 
 namespace parts {
 
+/// What a difference of normals counts, of the region's size: mouths find mouths, though other surface is nearer.
+constexpr double kAlike = 0.2;
+
 /// Where a model's vertices should go to lie on a scan, and how much each is to be believed.
 struct Targets {
   std::vector<Vec3> point;
@@ -27,6 +30,7 @@ class FitTarget {
 
   bool empty() const { return closest_.empty(); }
   double size() const { return size_; }
+  const Vec3& center() const { return center_; }  ///< of where it matters, world units
   bool flawed(int face) const { return !flaw_.empty() && flaw_[face]; }
   const ClosestFace& closest() const { return closest_; }
   const std::vector<Sample>& rim() const { return rim_; }  ///< good vertices near its borders
@@ -43,6 +47,7 @@ class FitTarget {
  private:
   const std::vector<char>& flaw_;
   double size_;
+  Vec3 center_;
   ClosestFace closest_;
   std::vector<Sample> rim_;
   std::vector<Alike> points_;
@@ -55,16 +60,14 @@ class Matching {
   Matching(const Mesh& model, const FitTarget& target, bool robust, int threads)
       : model_(model), target_(target), robust_(robust), threads_(threads) {}
 
-  /// Pairs farther apart than `farthest`, on the scan's border or on a side
-  /// that faces away are none; of the rest, those that are out of line count
+  /// Pairs farther apart than `farthest`, on damaged faces, on the scan's border
+  /// or on a side that faces away are none; of the rest, those that are out of line count
   /// less (Geman and McClure's estimator), if `robust`.
   /// @param at           the model's vertices now
-  /// @param flaw_weight  of what lies on damaged faces
   /// @param stride       > 1: only every so many-th vertex is paired
   /// @param normals      > 0: not the nearest point, but the one nearest in place
   ///                     and normal, of which a difference counts so much, world units
-  Targets operator()(const std::vector<Vec3>& at, double farthest, double flaw_weight, int stride = 1,
-                     double normals = 0);
+  Targets operator()(const std::vector<Vec3>& at, double farthest, int stride = 1, double normals = 0);
 
   /// A vertex that sees only the scan's border is asked for by the scan's
   /// vertices that see it: a rim stands out. @param targets  of the call before

@@ -178,6 +178,12 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
     if (out.mended) progress.log("closed_small: " + std::to_string(out.mended));
   }
   out.mesh = first;
+  // More are blended than are tried as the base.
+  SearchOptions search_options = options.search;
+  RestoreOptions restore_options = options.restore;
+  restore_options.tries = options.search.candidates;
+  if (options.restore.fit_to_rim)
+    search_options.candidates = std::max(search_options.candidates, options.restore.blend);
   std::string failure;
   SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -191,14 +197,14 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
     }
     try {
       Progress searching = progress.part(from, from + (to - from) / 2);
-      const std::vector<Candidate> found = search(out.mesh, region, database, options.search, memory, searching);
+      const std::vector<Candidate> found = search(out.mesh, region, database, search_options, memory, searching);
       std::vector<PlacedModel> models;
       for (const Candidate& c : found)
         models.push_back({placed(database.load(c.model), c.placement), database.name(c.model)});
       Progress mending = progress.part(from + (to - from) / 2, to);
       mending.stage(options.fill ? "Filling" : "Restoring", 0, 100);
-      Restored r = options.fill ? fill_hole(out.mesh, region, models, options.restore, mending)
-                                : restore_surface(out.mesh, region, models, options.restore, mending);
+      Restored r = options.fill ? fill_hole(out.mesh, region, models, restore_options, mending)
+                                : restore_surface(out.mesh, region, models, restore_options, mending);
       log_region(r.report, found, database, progress);
       out.mesh = std::move(r.mesh);
       const Candidate& used = found[r.report.model];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "database/paste.h"
 
+#include <algorithm>
+
 #include "compose/clip.h"
 #include "compose/joined.h"
 #include "compose/seam.h"
@@ -188,6 +190,21 @@ Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Lo
   return j;
 }
 
+/// Pieces of the model that were joined to nothing go.
+void drop_unjoined(Mesh& mesh, std::vector<char>& tag) {
+  const std::vector<int> component = vertex_components(mesh);
+  std::vector<char> of_scan(mesh.vertices.size(), 0), keep(tag.size());
+  for (std::size_t f = 0; f < tag.size(); ++f)
+    if (!tag[f]) of_scan[component[mesh.faces[f][0]]] = 1;
+  for (std::size_t f = 0; f < tag.size(); ++f) keep[f] = of_scan[component[mesh.faces[f][0]]];
+  if (std::find(keep.begin(), keep.end(), 0) == keep.end()) return;
+  std::vector<int> old_face;
+  mesh = take_faces(mesh, keep, nullptr, &old_face);
+  std::vector<char> left;
+  for (int f : old_face) left.push_back(tag[f]);
+  tag = std::move(left);
+}
+
 /// @param away  how far from the rim the model is to end, in edges of the rim
 Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands, double away,
              const PasteOptions& options) {
@@ -235,6 +252,7 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   ComposeReport report;
   stitch_parts(j, max_gap, report);
   finish_seam(j, edge, Cut::Refined, options.smoothing, options.threads);
+  drop_unjoined(j.mesh, j.tag);
   const MeshCheck after = check(j.mesh);
   out.joined = report.loops_joined, out.capped = report.loops_capped;
   out.seam_length = report.seam_length, out.seam_gap = report.seam_gap;

@@ -16,7 +16,7 @@
 namespace parts {
 namespace {
 
-constexpr double kAround = 1.0;  // of the region's size
+constexpr double kAround = 0.8;  // of the region's size
 
 Vec3 center_of(const Mesh& m, int f) { return (m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3; }
 
@@ -72,6 +72,7 @@ class Mender {
   Restored fill();
 
  private:
+  bool blends() const { return options_.fit_to_rim && options_.blend > 1; }
   void bring(Candidate& candidate, int model, const FitTarget& target) const;
   void bring_first(int count, const FitTarget& target);
   Fit fit(int model, const FitTarget& target);
@@ -109,6 +110,7 @@ void Mender::bring(Candidate& candidate, int model, const FitTarget& target) con
   if (options_.fit_to_rim) {
     const double before = candidate.fitted.rms_before;
     o.rigid = false, o.smooth = true;
+    if (blends()) o.finest = 0.12;  // the blend is fitted once more
     candidate.fitted = fit_to_rim(mesh, target, o, silent);
     candidate.posed.rms = candidate.fitted.rms_before;
     candidate.fitted.rms_before = before;
@@ -136,31 +138,28 @@ void Mender::bring_first(int count, const FitTarget& target) {
 Fit Mender::fit(int model, const FitTarget& target) {
   Fit f;
   f.model = model;
-  const bool blend = options_.fit_to_rim && options_.blend > 1;
-  bring_first(std::max(model + 1, blend ? options_.blend : 1), target);
+  bring_first(std::max(model + 1, blends() ? options_.blend : 1), target);
   const Candidate& own = candidates_[model];
   f.mesh = own.posed.mesh, f.fitted = own.fitted;
   if (f.mesh.faces.empty() || target.empty()) return f;
   f.mesh.vertices = own.posed.fitted;
-  if (blend) {
+  if (blends()) {
     std::vector<PosedModel> posed{own.posed};
     for (int m = 0; m < int(candidates_.size()) && int(posed.size()) < options_.blend; ++m)
       if (const Candidate& c = candidates_[m];
           m != model && c.done && c.fits() && c.fitted.rms_after < 0.05 * target.size())
         posed.push_back(c.posed);
     Blended blended = blend_models(posed, target, options_.threads, progress_);
-    if (blended.models > 1) {
-      f.blended = blended.models;
-      f.mesh.vertices = std::move(blended.vertices);
-      FitOptions o;
-      o.rigid = false;
-      o.threads = options_.threads;
-      const double before = f.fitted.rms_before;
-      Progress silent;
-      f.fitted = fit_to_rim(f.mesh, target, o, silent);
-      f.fitted.rms_before = before;
-      f.mesh.vertices = f.fitted.vertices;
-    }
+    f.blended = blended.models;
+    if (blended.models > 1) f.mesh.vertices = std::move(blended.vertices);
+    FitOptions o;
+    o.rigid = false;
+    o.threads = options_.threads;
+    const double before = f.fitted.rms_before;
+    Progress silent;
+    f.fitted = fit_to_rim(f.mesh, target, o, silent);
+    f.fitted.rms_before = before;
+    f.mesh.vertices = f.fitted.vertices;
   }
   if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
   return f;
@@ -280,8 +279,9 @@ Restored Mender::fill() {
   Restored out;
   const std::vector<char> no_flaw;
   const FitTarget target(scan_, no_flaw, around(region_, 2 * kAround), region_.size());
-  for (int m = 0; m < int(models_.size()); ++m) {
-    progress_.at(double(m) / double(models_.size()));
+  const int tries = std::min(options_.tries, int(models_.size()));
+  for (int m = 0; m < tries; ++m) {
+    progress_.at(double(m) / tries);
     const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
     if (options_.cut == Cut::Thesis)
@@ -298,9 +298,10 @@ Restored Mender::restore() {
   const FlawConstraints constraints = flaw_constraints(scan_, region_, options_.constraint_distance);
   if (std::find(constraints.flaw.begin(), constraints.flaw.end(), 1) == constraints.flaw.end())
     throw UserError("No whole face of the scan lies in the region; enlarge the box around the flaw.");
-  const FitTarget target(scan_, constraints.flaw, around(region_, 2 * kAround), region_.size());
-  for (int m = 0; m < int(models_.size()); ++m) {
-    progress_.at(double(m) / double(models_.size()));
+  const FitTarget target(scan_, constraints.suspect, around(region_, 2 * kAround), region_.size());
+  const int tries = std::min(options_.tries, int(models_.size()));
+  for (int m = 0; m < tries; ++m) {
+    progress_.at(double(m) / tries);
     const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
     if (options_.cut == Cut::Thesis) return thesis_cut(f, constraints.keep, near_centre(f.mesh));

@@ -21,7 +21,8 @@ struct RestoreOptions {
   bool refine = true;                ///< ICP on the surface around the region, before anything else
   bool allow_scale = true;           ///< the ICP may change the model's size
   bool fit_to_rim = true;            ///< bend the model onto the scan around the region; false: as it is (thesis)
-  int blend = 5;                     ///< how many of the models are averaged, at most; 1 = the best alone
+  int tries = 5;                     ///< of so many models the first that closes what was opened is the base
+  int blend = 16;                    ///< how many of the models are blended, at most; 1 = the base alone
   Cut cut = Cut::Refined;            ///< Thesis: compose() with the constraints of Fig. 7
   int resolution = 0;                ///< of the thesis' cut
   SeamSmoothing smoothing;           ///< distance 0 = two edges of the rim
@@ -48,8 +49,8 @@ struct Restored {
 };
 
 /// Replaces a flawed surface by that of a model (thesis 3.3.1), or fills a hole
-/// with it (3.3.2). The models are tried in their order until one closes what
-/// was opened. Faces outside the region, and for holes all faces of the scan but
+/// with it (3.3.2). The models, best first, are tried in their order until one
+/// closes what was opened. Faces outside the region, and for holes all faces of the scan but
 /// loose pieces within the hole, are copied bit for bit.
 /// @param scan    prepared: welded, its faces oriented
 /// @param region  of flaw_regions() or hole_regions() of this scan

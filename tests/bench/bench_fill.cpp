@@ -143,7 +143,7 @@ Mesh Bench::mend(const MemberClass& members, std::size_t which, const DamageCase
   options.fill = what.kind == DamageCase::Hole;
   options.region = damaged.region;
   if (const int blend = std::stoi(value("blend", "0")); blend > 0) options.restore.blend = blend;
-  options.search.candidates = std::max(5, options.restore.blend);
+  options.search.candidates = options.restore.tries;
   options.restore.fit_to_rim = fit;
   if (!fit) options.restore.blend = 1;
   return mend_scan(damaged.scan, database, options, silent).mesh;
