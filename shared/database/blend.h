@@ -21,13 +21,11 @@ struct Blended {
 };
 
 /// Blends models where they agree (beyond the thesis): the base is brought onto
-/// each of the others, so that all are shapes of one mesh, and of all shapes
-/// that their mean and differences make, the likeliest given the scan around
-/// the flaw or hole is taken (a ridge regression on the distances to it, as in
-/// Blanz and Vetter's morphable models). What lies over the hole follows.
-/// Corresponding points are found between the fitted poses, which are alike
-/// around the hole; the shapes are those of the rigid ones. Models that are more
-/// like the scan around the hole count more.
+/// each of the others, so that all are shapes of one mesh, and of all shapes that
+/// a ShapePrior makes of them the likeliest given the scan around the flaw or
+/// hole is taken. What lies over the hole follows. Corresponding points are found
+/// between the fitted poses, which are alike around the hole; the shapes are
+/// those of the rigid ones. Models that are more like the scan there count more.
 /// @param models  the first is the base, the best
 /// @param threads  0 = all cores; the result does not depend on it
 /// @throws Cancelled

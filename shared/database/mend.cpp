@@ -2,8 +2,10 @@
 #include "database/mend.h"
 
 #include <algorithm>
+#include <set>
 
 #include "geometry/attributes.h"
+#include "geometry/edges.h"
 #include "geometry/pinches.h"
 #include "geometry/prepare.h"
 #include "geometry/topology.h"
@@ -60,7 +62,7 @@ std::vector<Region> regions_of(const Mesh& scan, const MendOptions& options) {
   return options.fill ? hole_regions(scan, options.region) : flaw_regions(scan, options.region);
 }
 
-/// The region in a scan that has changed since: by where its rims begin, and
+/// The region in a scan that has changed since: by the edges of its rims, and
 /// where its flawed faces are. Nothing if it is gone.
 bool find_again(Region& region, const Mesh& before, const Mesh& now) {
   if (!region.flaw.empty()) {
@@ -84,14 +86,18 @@ bool find_again(Region& region, const Mesh& before, const Mesh& now) {
     return any;
   }
   if (region.rims.empty()) return true;
+  // What is left of a rim that the patch of another hole joined in part keeps some of its edges.
+  const auto place = [](const Mesh& m, const Loop& l, int i) {
+    return edge_place(m, l.vertices[i], l.vertices[(i + 1) % l.size()]);
+  };
+  std::set<EdgePlace> edges;
+  for (const Loop& old : region.rims)
+    for (int i = 0; i < old.size(); ++i) edges.insert(place(before, old, i));
   std::vector<Loop> again;
-  const std::vector<Loop> rims = find_rims(now);
-  for (const Loop& old : region.rims) {
-    const Vec3 &at = before.vertices[old.vertices[0]], &next = before.vertices[old.vertices[1]];
-    for (const Loop& l : rims)
-      for (int i = 0; i < l.size(); ++i)
-        if (now.vertices[l.vertices[i]] == at && now.vertices[l.vertices[(i + 1) % l.size()]] == next)
-          again.push_back(l);
+  for (Loop& l : find_rims(now)) {
+    bool same = false;
+    for (int i = 0; i < l.size() && !same; ++i) same = edges.count(place(now, l, i)) > 0;
+    if (same) again.push_back(std::move(l));
   }
   region.rims = std::move(again);
   return !region.rims.empty();

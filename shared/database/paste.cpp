@@ -2,6 +2,7 @@
 #include "database/paste.h"
 
 #include <algorithm>
+#include <set>
 
 #include "compose/clip.h"
 #include "compose/joined.h"
@@ -9,6 +10,7 @@
 #include "database/closest_face.h"
 #include "geometry/attributes.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
 #include "geometry/topology.h"
 
 namespace parts {
@@ -190,6 +192,17 @@ Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Lo
   return j;
 }
 
+/// All that is open was so before, and the rim is not.
+bool closes(const Mesh& before, const Loop& rim, const Mesh& after) {
+  std::set<EdgePlace> open;
+  for (const auto& e : boundary_half_edges(before)) open.insert(edge_place(before, e[0], e[1]));
+  for (int i = 0; i < rim.size(); ++i)
+    open.erase(edge_place(before, rim.vertices[i], rim.vertices[(i + 1) % rim.size()]));
+  const auto left = boundary_half_edges(after);
+  return std::all_of(left.begin(), left.end(),
+                     [&](const auto& e) { return open.count(edge_place(after, e[0], e[1])) > 0; });
+}
+
 /// Pieces of the model that were joined to nothing go.
 void drop_unjoined(Mesh& mesh, std::vector<char>& tag) {
   const std::vector<int> component = vertex_components(mesh);
@@ -251,14 +264,12 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   const MeshCheck before = check(scan), loose_patch = check(patch.mesh);
   ComposeReport report;
   stitch_parts(j, max_gap, report);
-  finish_seam(j, edge, Cut::Refined, options.smoothing, options.threads);
+  out.crossings = finish_seam(j, edge, Cut::Refined, options.smoothing, options.threads);
   drop_unjoined(j.mesh, j.tag);
   const MeshCheck after = check(j.mesh);
   out.joined = report.loops_joined, out.capped = report.loops_capped;
   out.seam_length = report.seam_length, out.seam_gap = report.seam_gap;
-  // What may stay open: the scan's other borders, and holes that the model has itself.
-  const int own = loose_patch.boundary_edges - int(patch.border.size());
-  out.closed = report.loops_joined > 0 && after.boundary_edges <= before.boundary_edges - rim.size() + own &&
+  out.closed = report.loops_joined > 0 && closes(scan, rim, j.mesh) &&
                after.nonmanifold_edges <= before.nonmanifold_edges &&
                after.nonmanifold_vertices <= before.nonmanifold_vertices + loose_patch.nonmanifold_vertices &&
                after.inconsistent_edges <= before.inconsistent_edges;
@@ -270,14 +281,14 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
 }  // namespace
 
 Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOptions& options) {
-  // As near as can be; where that leaves splinters that do not join, farther off.
-  Pasted first;
+  // As near as can be; where that leaves splinters that do not join, or faces that cross, farther off.
+  Pasted best;
   for (double away : {0.4, 1.2, 2.4}) {
     Pasted p = paste(scan, model, rim, away, options);
-    if (p.closed) return p;
-    if (away == 0.4) first = std::move(p);
+    if (away == 0.4 || (p.closed && (!best.closed || p.crossings < best.crossings))) best = std::move(p);
+    if (best.closed && best.crossings == 0) break;
   }
-  return first;
+  return best;
 }
 
 }  // namespace parts

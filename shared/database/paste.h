@@ -18,6 +18,7 @@ struct Pasted {
   Mesh mesh;
   std::vector<char> face_from_model;        ///< per face: 0 the scan's, 1 the model's, 2 made by the stitch
   int joined = 0, capped = 0, islands = 0;  ///< rims joined, borders closed, loose pieces in the hole dropped
+  long crossings = 0;                       ///< pairs of faces at the seam that cross
   double seam_length = 0, seam_gap = 0;     ///< world units
 };
 

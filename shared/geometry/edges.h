@@ -14,6 +14,13 @@ struct HalfEdge {
   int high() const { return std::max(from, to); }
 };
 
+/// Where an edge lies: the same however vertices are numbered.
+using EdgePlace = std::array<double, 6>;
+inline EdgePlace edge_place(const Mesh& m, int from, int to) {
+  const Vec3 &a = m.vertices[from], &b = m.vertices[to];
+  return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+}
+
 /// All half-edges, those of the same edge side by side, in a fixed order.
 inline std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
   // Sorted by counting on the lower vertex, then within its few.
