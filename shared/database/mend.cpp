@@ -192,22 +192,22 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
     search_options.candidates = std::max(search_options.candidates, options.restore.blend);
   std::string failure;
   SearchMemory memory;
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    const int from = int(100 * i / regions.size()), to = int(100 * (i + 1) / regions.size());
+  // Whether the region is whole now; from and to are per cent of the progress.
+  const auto mend = [&](std::size_t i, int from, int to) {
     progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
     Region region = regions[i];
     if (!find_again(region, first, out.mesh)) {
       progress.log("mended_before: 1");  // the patch of another hole reached it
-      ++out.mended;
-      continue;
+      return true;
     }
     try {
-      Progress searching = progress.part(from, from + (to - from) / 2);
+      const int middle = from + (to - from) / 2;
+      Progress searching = progress.part(from, middle);
       const std::vector<Candidate> found = search(out.mesh, region, database, search_options, memory, searching);
       std::vector<PlacedModel> models;
       for (const Candidate& c : found)
         models.push_back({placed(database.load(c.model), c.placement), database.name(c.model)});
-      Progress mending = progress.part(from + (to - from) / 2, to);
+      Progress mending = progress.part(middle, to);
       mending.stage(options.fill ? "Filling" : "Restoring", 0, 100);
       Restored r = options.fill ? fill_hole(out.mesh, region, models, restore_options, mending)
                                 : restore_surface(out.mesh, region, models, restore_options, mending);
@@ -215,12 +215,22 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
       out.mesh = std::move(r.mesh);
       const Candidate& used = found[r.report.model];
       out.candidates.push_back({int(i), std::move(r.candidate), database.name(used.model), used.score});
-      ++out.mended;
+      return true;
     } catch (const UserError& e) {
       failure = e.what();
-      if (out.regions > 1) progress.log(std::string("left_as_it_was: ") + e.what());
+      if (out.regions > 1) progress.log("left_as_it_was: " + failure);
+      return false;
     }
-  }
+  };
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    if (mend(i, int(90 * i / regions.size()), int(90 * (i + 1) / regions.size())))
+      ++out.mended;
+    else
+      left.push_back(i);
+  // Once more, now that what lies beside them may be whole.
+  if (left.size() < regions.size())
+    for (std::size_t i : left) out.mended += mend(i, 90, 100);
   if (out.mended == 0) throw UserError(failure);
   return out;
 }
