@@ -17,7 +17,7 @@ Parameter allow_scale(bool value) {
 }
 
 /// What all three filters begin with.
-std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
+std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates, const std::string& candidates_are) {
   const SearchOptions search;
   std::vector<Parameter> list = {current_layer("Mesh", "Scan", "The damaged or incomplete model.")};
   list.push_back(open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Model database",
@@ -32,8 +32,7 @@ std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates) {
                         "How far the region reaches beyond the flaw or the hole, in the units of the scan; around a "
                         "box, how far beyond the box. 0 is a third of the flaw's or hole's half size (nothing around a "
                         "box)."));
-  list.push_back(integer("Candidates", candidates, 1, 1000, "Candidates",
-                         "How many of the most similar models are taken, at most."));
+  list.push_back(integer("Candidates", candidates, 1, 1000, "Candidates", candidates_are));
   list.push_back(integer("Levels", search.levels, 1, 3, "Levels of the search",
                          "The models are compared at so many resolutions, each twice as fine as the one before; at "
                          "each the worse half is dropped."));
@@ -56,7 +55,9 @@ void add_search(std::vector<Parameter>& list) {
 
 std::vector<Parameter> mend(const Scene& scene, bool fill) {
   const RestoreOptions o;
-  std::vector<Parameter> list = query(scene, fill ? RegionBy::Holes : RegionBy::Selection, 5);
+  std::vector<Parameter> list =
+      query(scene, fill ? RegionBy::Holes : RegionBy::Selection, RestoreOptions().tries,
+            "Of so many of the most similar models, the first that closes what is open is the base.");
   list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
                         "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
                         "or of the largest distance of the model from the scan (holes, with the cut of the "
@@ -90,7 +91,8 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
 
 std::vector<Parameter> find_parameters(const Scene& scene) {
   const SearchOptions search;
-  std::vector<Parameter> list = query(scene, RegionBy::Selection, 3);
+  std::vector<Parameter> list =
+      query(scene, RegionBy::Selection, 3, "How many of the most similar models are taken, at most.");
   list.push_back(allow_scale(search.allow_scale));
   add_search(list);
   return list;

@@ -2,10 +2,8 @@
 #include "database/mend.h"
 
 #include <algorithm>
-#include <set>
 
 #include "geometry/attributes.h"
-#include "geometry/edges.h"
 #include "geometry/pinches.h"
 #include "geometry/prepare.h"
 #include "geometry/topology.h"
@@ -86,20 +84,7 @@ bool find_again(Region& region, const Mesh& before, const Mesh& now) {
     return any;
   }
   if (region.rims.empty()) return true;
-  // What is left of a rim that the patch of another hole joined in part keeps some of its edges.
-  const auto place = [](const Mesh& m, const Loop& l, int i) {
-    return edge_place(m, l.vertices[i], l.vertices[(i + 1) % l.size()]);
-  };
-  std::set<EdgePlace> edges;
-  for (const Loop& old : region.rims)
-    for (int i = 0; i < old.size(); ++i) edges.insert(place(before, old, i));
-  std::vector<Loop> again;
-  for (Loop& l : find_rims(now)) {
-    bool same = false;
-    for (int i = 0; i < l.size() && !same; ++i) same = edges.count(place(now, l, i)) > 0;
-    if (same) again.push_back(std::move(l));
-  }
-  region.rims = std::move(again);
+  region.rims = rims_left(now, before, region.rims);
   return !region.rims.empty();
 }
 

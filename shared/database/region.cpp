@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
 #include "geometry/error.h"
 #include "geometry/topology.h"
 
@@ -65,6 +67,22 @@ std::vector<Loop> find_rims(const Mesh& scan) {
     if (rim.size() >= 3) rims.push_back(std::move(rim));
   }
   return rims;
+}
+
+std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<Loop>& rims) {
+  const auto place = [](const Mesh& m, const Loop& l, int i) {
+    return edge_place(m, l.vertices[i], l.vertices[(i + 1) % l.size()]);
+  };
+  std::set<EdgePlace> edges;
+  for (const Loop& rim : rims)
+    for (int i = 0; i < rim.size(); ++i) edges.insert(place(before, rim, i));
+  std::vector<Loop> left;
+  for (Loop& rim : find_rims(now)) {
+    bool held = false;
+    for (int i = 0; i < rim.size() && !held; ++i) held = edges.count(place(now, rim, i)) > 0;
+    if (held) left.push_back(std::move(rim));
+  }
+  return left;
 }
 
 namespace {

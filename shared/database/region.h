@@ -35,6 +35,11 @@ struct Region {
 /// The closed borders of a surface, in the direction of its faces.
 std::vector<Loop> find_rims(const Mesh& scan);
 
+/// Of the rims of a scan that has changed, those that still hold an edge of the
+/// rims it had: a patch may join a rim in part, and numbers change.
+/// @param now, before  the scan; the rims are those of `before`
+std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<Loop>& rims);
+
 /// The flaws to be restored: one region for each group of selected faces, or
 /// the box. With Holes, as hole_regions().
 /// @throws UserError  nothing is selected, the box is none, or holds no surface

@@ -179,18 +179,8 @@ bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const F
   std::vector<char> tag(open.faces.size(), 0);
   RestoreReport& r = out.report;
   r = {};
-  for (const Loop& wanted : rims) {
-    // The one before may have joined this rim too, and numbers change.
-    const Vec3 at = open.vertices[wanted.vertices[0]], next = open.vertices[wanted.vertices[1]];
-    const std::vector<Loop> now = find_rims(mesh);
-    const auto same = [&](const Loop& l) {
-      for (int i = 0; i < l.size(); ++i)
-        if (mesh.vertices[l.vertices[i]] == at && mesh.vertices[l.vertices[(i + 1) % l.size()]] == next) return true;
-      return false;
-    };
-    const auto rim = std::find_if(now.begin(), now.end(), same);
-    if (rim == now.end()) continue;
-    Pasted p = paste(mesh, fit.mesh, *rim, paste_options());
+  for (std::vector<Loop> left = rims; !left.empty(); left = rims_left(mesh, open, rims)) {
+    Pasted p = paste(mesh, fit.mesh, left[0], paste_options());
     if (!p.closed) return false;
     r.rims_joined += p.joined, r.borders_capped += p.capped, r.islands_dropped += p.islands;
     r.seam_length += p.seam_length, r.seam_gap = std::max(r.seam_gap, p.seam_gap);
