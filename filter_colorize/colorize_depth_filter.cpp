@@ -2,16 +2,16 @@
 #include <chrono>
 #include <filesystem>
 
-#include "colorize/colorize_depth.h"
 #include "filters.h"
-#include "geometry/error.h"
-#include "host/common.h"
-#include "mappings/examples.h"
 #include "parameters.h"
-#include "raster/depth_mesh.h"
-#include "raster/raster_io.h"
-#include "raster/texture.h"
-#include "synthesis/usage_picture.h"
+#include "parts/base/error.h"
+#include "parts/colorize/colorize_depth.h"
+#include "parts/examples/examples.h"
+#include "parts/host/common.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/depth_mesh.h"
+#include "parts/render/texture.h"
+#include "parts/synthesis/usage_picture.h"
 
 namespace parts {
 namespace {

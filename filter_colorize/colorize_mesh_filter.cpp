@@ -3,17 +3,17 @@
 #include <chrono>
 #include <filesystem>
 
-#include "colorize/colorize_mesh.h"
 #include "filters.h"
-#include "geometry/error.h"
-#include "host/common.h"
 #include "parameters.h"
-#include "raster/raster_io.h"
-#include "raster/texture.h"
+#include "parts/base/error.h"
+#include "parts/base/memory.h"
+#include "parts/colorize/colorize_mesh.h"
+#include "parts/host/common.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/surface_color.h"
+#include "parts/render/texture.h"
+#include "parts/synthesis/usage_picture.h"
 #include "recent_models.h"
-#include "render/surface_color.h"
-#include "synthesis/usage_picture.h"
-#include "voxel/memory.h"
 
 namespace parts {
 namespace {

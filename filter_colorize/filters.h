@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 namespace parts {
 

@@ -3,8 +3,8 @@
 
 #include <sstream>
 
-#include "geometry/error.h"
-#include "host/common.h"
+#include "parts/base/error.h"
+#include "parts/host/common.h"
 
 namespace parts {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "colorize/color_examples.h"
-#include "host/filter.h"
+#include "parts/colorize/color_examples.h"
+#include "parts/host/filter.h"
 
 namespace parts {
 

@@ -2,8 +2,8 @@
 #include <chrono>
 
 #include "filters.h"
-#include "host/common.h"
-#include "mappings/build_mappings.h"
+#include "parts/examples/build_mappings.h"
+#include "parts/host/common.h"
 
 namespace parts {
 namespace {

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "filters.h"
-#include "geometry/error.h"
-#include "raster/depth_mesh.h"
-#include "raster/raster_io.h"
-#include "raster/texture.h"
+#include "parts/base/error.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/depth_mesh.h"
+#include "parts/render/texture.h"
 
 namespace parts {
 namespace {

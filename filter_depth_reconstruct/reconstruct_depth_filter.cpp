@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <sstream>
 
-#include "depth/reconstruct_depth.h"
-#include "depth/segment.h"
 #include "filters.h"
-#include "geometry/error.h"
-#include "host/common.h"
-#include "mappings/examples.h"
-#include "raster/depth_mesh.h"
-#include "raster/raster_io.h"
-#include "raster/texture.h"
-#include "synthesis/usage_picture.h"
+#include "parts/base/error.h"
+#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/segment.h"
+#include "parts/examples/examples.h"
+#include "parts/host/common.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/depth_mesh.h"
+#include "parts/render/texture.h"
+#include "parts/synthesis/usage_picture.h"
 
 namespace parts {
 namespace {

@@ -3,13 +3,13 @@
 // models. Names, help, parameters, one call into the core, new layers.
 #include <sstream>
 
-#include "align/align.h"
-#include "compose/compose.h"
-#include "compose/constraint.h"
-#include "compose/deform.h"
-#include "geometry/error.h"
-#include "host/common.h"
 #include "parameters.h"
+#include "parts/align/align.h"
+#include "parts/base/error.h"
+#include "parts/compose/compose.h"
+#include "parts/compose/constraint.h"
+#include "parts/compose/deform.h"
+#include "parts/host/common.h"
 
 namespace parts {
 

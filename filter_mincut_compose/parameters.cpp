@@ -2,9 +2,9 @@
 // Names and types are relied on by scripts outside the project: they do not change.
 #include "parameters.h"
 
-#include "align/align.h"
-#include "compose/deform.h"
-#include "host/common.h"
+#include "parts/align/align.h"
+#include "parts/compose/deform.h"
+#include "parts/host/common.h"
 
 namespace parts {
 

@@ -4,10 +4,10 @@
 // core, new layers.
 #include <chrono>
 
-#include "database/mend.h"
-#include "geometry/error.h"
-#include "host/common.h"
 #include "parameters.h"
+#include "parts/base/error.h"
+#include "parts/host/common.h"
+#include "parts/mend/mend.h"
 
 namespace parts {
 

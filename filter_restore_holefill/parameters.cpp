@@ -2,8 +2,8 @@
 // Names and types are relied on by scripts outside the project: they do not change.
 #include "parameters.h"
 
-#include "database/mend.h"
-#include "host/common.h"
+#include "parts/host/common.h"
+#include "parts/mend/mend.h"
 
 namespace parts {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 namespace parts {
 

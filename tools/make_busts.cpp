@@ -8,9 +8,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mlp_project.h"
+#include "parts/base/error.h"
+#include "parts/io/mesh_io.h"
+#include "parts/io/mlp_project.h"
 #include "support/busts.h"
 
 namespace {

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <exception>
 
-#include "geometry/mesh_io.h"
-#include "geometry/self_intersections.h"
-#include "geometry/topology.h"
+#include "parts/io/mesh_io.h"
+#include "parts/mesh/self_intersections.h"
+#include "parts/mesh/topology.h"
 
 namespace {
 

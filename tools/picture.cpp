@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
-#include "render/camera.h"
-#include "render/rasterize.h"
+#include "parts/base/error.h"
+#include "parts/io/mesh_io.h"
+#include "parts/render/camera.h"
+#include "parts/render/rasterize.h"
 
 namespace {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "align/align.h"
+#include "parts/align/align.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "align/coarse_poses.h"
-#include "align/comparison.h"
-#include "align/tasks.h"
-#include "geometry/error.h"
-#include "geometry/parallel.h"
+#include "parts/align/coarse_poses.h"
+#include "parts/align/comparison.h"
+#include "parts/base/error.h"
+#include "parts/base/parallel.h"
+#include "parts/base/tasks.h"
 
 namespace parts {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "geometry/mesh.h"
-#include "geometry/progress.h"
+#include "parts/base/progress.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "align/coarse_poses.h"
+#include "parts/align/coarse_poses.h"
 
 #include <algorithm>
 #include <numeric>

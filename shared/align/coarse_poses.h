@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "align/pose.h"
-#include "align/surface.h"
+#include "parts/align/pose.h"
+#include "parts/spatial/surface.h"
 
 namespace parts {
 

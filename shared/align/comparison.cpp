@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "align/comparison.h"
+#include "parts/align/comparison.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.h"
+#include "parts/base/parallel.h"
 
 namespace parts {
 namespace {

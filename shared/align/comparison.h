@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "align/closest_point.h"
-#include "align/icp.h"
+#include "parts/align/icp.h"
+#include "parts/spatial/closest_point.h"
 
 namespace parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "align/icp.h"
+#include "parts/align/icp.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

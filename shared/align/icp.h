@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "align/closest_point.h"
-#include "align/pose.h"
+#include "parts/align/pose.h"
+#include "parts/spatial/closest_point.h"
 
 namespace parts {
 

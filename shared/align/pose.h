@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/color_examples.h"
+#include "parts/colorize/color_examples.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "geometry/error.h"
-#include "geometry/median.h"
-#include "raster/mask.h"
+#include "parts/base/error.h"
+#include "parts/base/median.h"
+#include "parts/render/mask.h"
 
 namespace parts {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mappings/example.h"
-#include "synthesis/synthesis.h"
+#include "parts/examples/example.h"
+#include "parts/synthesis/synthesis.h"
 
 /// What the colouring of depth maps and of meshes have in common: which objects
 /// give their colours, as which planes, and how these are weighed.

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/colorize_depth.h"
+#include "parts/colorize/colorize_depth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/error.h"
-#include "geometry/median.h"
-#include "raster/mask.h"
-#include "raster/raster_io.h"
-#include "synthesis/pyramid.h"
+#include "parts/base/error.h"
+#include "parts/base/median.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/mask.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "colorize/color_examples.h"
-#include "geometry/progress.h"
+#include "parts/base/progress.h"
+#include "parts/colorize/color_examples.h"
 
 namespace parts {
 

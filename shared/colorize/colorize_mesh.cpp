@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/colorize_mesh.h"
+#include "parts/colorize/colorize_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "align/align.h"
-#include "colorize/kept_colors.h"
-#include "geometry/error.h"
-#include "render/surface_color.h"
-#include "synthesis/pyramid.h"
-#include "voxel/memory.h"
+#include "parts/align/align.h"
+#include "parts/base/error.h"
+#include "parts/base/memory.h"
+#include "parts/colorize/kept_colors.h"
+#include "parts/render/surface_color.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

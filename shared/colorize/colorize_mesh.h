@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "colorize/mesh_colors.h"
-#include "geometry/progress.h"
-#include "mappings/class_models.h"
+#include "parts/base/progress.h"
+#include "parts/colorize/mesh_colors.h"
+#include "parts/examples/class_models.h"
 
 namespace parts {
 

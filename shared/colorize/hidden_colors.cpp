@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/hidden_colors.h"
+#include "parts/colorize/hidden_colors.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <algorithm>
 
-#include "database/closest_face.h"
-#include "geometry/parallel.h"
-#include "geometry/prepare.h"
-#include "render/surface_color.h"
+#include "parts/base/parallel.h"
+#include "parts/mesh/prepare.h"
+#include "parts/render/surface_color.h"
+#include "parts/spatial/closest_face.h"
 
 namespace parts {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mappings/class_models.h"
+#include "parts/examples/class_models.h"
 
 namespace parts {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/kept_colors.h"
+#include "parts/colorize/kept_colors.h"
 
 #include <cmath>
 
-#include "geometry/parallel.h"
+#include "parts/base/parallel.h"
 
 namespace parts {
 

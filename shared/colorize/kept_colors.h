@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mappings/class_models.h"
+#include "parts/examples/class_models.h"
 
 namespace parts {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/mesh_colors.h"
+#include "parts/colorize/mesh_colors.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "colorize/hidden_colors.h"
-#include "colorize/kept_colors.h"
-#include "geometry/attributes.h"
-#include "geometry/parallel.h"
-#include "render/surface_color.h"
+#include "parts/base/parallel.h"
+#include "parts/colorize/hidden_colors.h"
+#include "parts/colorize/kept_colors.h"
+#include "parts/mesh/attributes.h"
+#include "parts/render/surface_color.h"
 
 namespace parts {
 namespace {

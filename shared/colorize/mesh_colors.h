@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "colorize/color_examples.h"
-#include "colorize/view_sheet.h"
-#include "geometry/atlas.h"
-#include "mappings/class_models.h"
+#include "parts/colorize/color_examples.h"
+#include "parts/colorize/view_sheet.h"
+#include "parts/examples/class_models.h"
+#include "parts/render/atlas.h"
 
 namespace parts {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/view_sheet.h"
+#include "parts/colorize/view_sheet.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/parallel.h"
+#include "parts/base/parallel.h"
 
 namespace parts {
 namespace {

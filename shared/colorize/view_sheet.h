@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "mappings/example.h"
-#include "synthesis/synthesis.h"
+#include "parts/examples/example.h"
+#include "parts/synthesis/synthesis.h"
 
 namespace parts {
 

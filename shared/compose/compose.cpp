@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/compose.h"
+#include "parts/compose/compose.h"
 
 #include <chrono>
 #include <memory>
 
-#include "compose/clip.h"
-#include "compose/crossings.h"
-#include "compose/decision.h"
-#include "compose/joined.h"
-#include "compose/transition.h"
-#include "compose/transition_surface.h"
-#include "compose/volume.h"
-#include "geometry/attributes.h"
-#include "voxel/rasterize.h"
+#include "parts/cut/crossings.h"
+#include "parts/cut/decision.h"
+#include "parts/cut/rasterize.h"
+#include "parts/cut/transition.h"
+#include "parts/cut/transition_surface.h"
+#include "parts/cut/volume.h"
+#include "parts/mesh/attributes.h"
+#include "parts/seam/clip.h"
+#include "parts/seam/joined.h"
 
 namespace parts {
 namespace {
@@ -66,7 +66,7 @@ std::unique_ptr<Attempt> attempt(Model& a, Model& b, const Box& volume, int reso
                                  Progress& progress) {
   auto t = std::make_unique<Attempt>();
   progress.stage("Finding the minimal cut", 10, 50);
-  t->decision = decide(a, b, volume, resolution, options, t->report, progress);
+  t->decision = decide(a, b, volume, resolution, options.cut, options.threads, t->report, progress);
   if (!t->decision.labels.connected) return t;
   progress.at(0.9);
   const Transition transition = make_transition(a, b, t->decision, options.cut);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/constraint.h"
+#include "parts/compose/constraint.h"
 
-#include "geometry/error.h"
-#include "voxel/rasterize.h"
+#include "parts/base/error.h"
+#include "parts/cut/rasterize.h"
 
 namespace parts {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts {
 

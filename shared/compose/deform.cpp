@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/deform.h"
+#include "parts/compose/deform.h"
 
-#include "geometry/attributes.h"
+#include "parts/mesh/attributes.h"
 
 namespace parts {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "compose/compose.h"
+#include "parts/compose/compose.h"
 
 namespace parts {
 

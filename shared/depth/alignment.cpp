@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/alignment.h"
+#include "parts/depth/alignment.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "raster/mask.h"
-#include "synthesis/pyramid.h"
+#include "parts/render/mask.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/example_set.h"
+#include "parts/depth/example_set.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "depth/alignment.h"
-#include "raster/mask.h"
+#include "parts/depth/alignment.h"
+#include "parts/render/mask.h"
 
 namespace parts {
 namespace {

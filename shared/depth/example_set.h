@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "depth/gallery.h"
-#include "depth/reconstruct_depth.h"
+#include "parts/depth/gallery.h"
+#include "parts/depth/reconstruct_depth.h"
 
 namespace parts {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/gallery.h"
+#include "parts/depth/gallery.h"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "geometry/error.h"
-#include "synthesis/pyramid.h"
+#include "parts/base/error.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 

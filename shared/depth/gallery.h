@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "mappings/example.h"
-#include "synthesis/synthesis.h"
+#include "parts/examples/example.h"
+#include "parts/synthesis/synthesis.h"
 
 namespace parts {
 

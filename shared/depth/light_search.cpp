@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/light_search.h"
+#include "parts/depth/light_search.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "depth/view_search.h"
-#include "synthesis/pyramid.h"
+#include "parts/depth/view_search.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/reconstruct_depth.h"
+#include "parts/depth/reconstruct_depth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "depth/alignment.h"
-#include "depth/example_set.h"
-#include "depth/light_search.h"
-#include "depth/segment.h"
-#include "depth/trust.h"
-#include "depth/view_search.h"
-#include "geometry/error.h"
-#include "synthesis/pyramid.h"
+#include "parts/base/error.h"
+#include "parts/depth/alignment.h"
+#include "parts/depth/example_set.h"
+#include "parts/depth/light_search.h"
+#include "parts/depth/segment.h"
+#include "parts/depth/trust.h"
+#include "parts/depth/view_search.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/progress.h"
-#include "mappings/example.h"
+#include "parts/base/progress.h"
+#include "parts/examples/example.h"
 
 namespace parts {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/segment.h"
+#include "parts/depth/segment.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "depth/alignment.h"
-#include "depth/view_search.h"
-#include "geometry/error.h"
-#include "synthesis/pyramid.h"
+#include "parts/base/error.h"
+#include "parts/depth/alignment.h"
+#include "parts/depth/view_search.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/trust.h"
+#include "parts/depth/trust.h"
 
 #include <algorithm>
 
-#include "depth/view_search.h"
+#include "parts/depth/view_search.h"
 
 namespace parts {
 namespace {

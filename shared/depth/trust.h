@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "depth/example_set.h"
+#include "parts/depth/example_set.h"
 
 namespace parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/view_search.h"
+#include "parts/depth/view_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/cameras.h"
+#include "parts/host/cameras.h"
 
 #include <QFileInfo>
 
-#include "geometry/error.h"
-#include "mappings/mlp_camera.h"
+#include "parts/base/error.h"
+#include "parts/render/mlp_camera.h"
 
 namespace parts::host {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/common.h"
+#include "parts/host/common.h"
 
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 
 namespace parts::host {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "compose/compose.h"
-#include "host/filter.h"
-#include "mappings/class_preset.h"
+#include "parts/host/filter.h"
+#include "parts/io/class_preset.h"
+#include "parts/seam/seam.h"
 
 /// What filters of several plugins have in common: parameters, how their values
 /// are read, and checks of inputs.

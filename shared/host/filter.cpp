@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 #include <cstdio>
 

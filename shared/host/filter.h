@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh.h"
-#include "geometry/progress.h"
-#include "render/camera.h"
+#include "parts/base/progress.h"
+#include "parts/mesh/mesh.h"
+#include "parts/render/camera.h"
 
 class MeshModel;  // the host's layer
 

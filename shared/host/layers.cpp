@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/layers.h"
+#include "parts/host/layers.h"
 
 #include <common/meshmodel.h>
 #include <vcg/complex/algorithms/clean.h>
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <QDir>
 
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 namespace parts::host {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 class MeshModel;
 

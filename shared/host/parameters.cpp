@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/parameters.h"
+#include "parts/host/parameters.h"
 
 #include <QFileInfo>
 #include <cmath>
 #include <sstream>
 
-#include "geometry/error.h"
-#include "host/cameras.h"
-#include "host/layers.h"
+#include "parts/base/error.h"
+#include "parts/host/cameras.h"
+#include "parts/host/layers.h"
 
 namespace parts::host {
 

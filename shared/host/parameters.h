@@ -4,7 +4,7 @@
 #include <common/filter_parameter/rich_parameter_list.h>
 #include <common/meshmodel.h>
 
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 namespace parts::host {
 

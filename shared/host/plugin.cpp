@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "host/plugin.h"
+#include "parts/host/plugin.h"
 
 #include <new>
 
-#include "geometry/error.h"
-#include "host/cameras.h"
-#include "host/layers.h"
-#include "host/parameters.h"
+#include "parts/base/error.h"
+#include "parts/host/cameras.h"
+#include "parts/host/layers.h"
+#include "parts/host/parameters.h"
 
 namespace parts::host {
 

@@ -3,7 +3,7 @@
 
 #include <common/interfaces.h>
 
-#include "host/filter.h"
+#include "parts/host/filter.h"
 
 namespace parts::host {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/camera.h"
+#include "parts/render/camera.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 
 namespace parts {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/rasterize.h"
+#include "parts/render/rasterize.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/parallel.h"
-#include "render/shade.h"
+#include "parts/base/parallel.h"
+#include "parts/render/shade.h"
 
 namespace parts {
 namespace {

@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "geometry/mesh.h"
-#include "render/camera.h"
+#include "parts/mesh/mesh.h"
+#include "parts/render/camera.h"
 
 namespace parts {
 

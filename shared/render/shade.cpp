@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/shade.h"
+#include "parts/render/shade.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.h"
-#include "render/surface_color.h"
+#include "parts/base/parallel.h"
+#include "parts/render/surface_color.h"
 
 namespace parts {
 

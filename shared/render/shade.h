@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/rasterize.h"
+#include "parts/render/rasterize.h"
 
 namespace parts {
 

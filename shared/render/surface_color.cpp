@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/surface_color.h"
+#include "parts/render/surface_color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "render/rasterize.h"
+#include "parts/render/rasterize.h"
 
 namespace parts {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/level.h"
+#include "parts/synthesis/level.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.h"
-#include "synthesis/pyramid.h"
+#include "parts/base/parallel.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 

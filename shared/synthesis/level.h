@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "synthesis/search.h"
+#include "parts/synthesis/search.h"
 
 namespace parts {
 

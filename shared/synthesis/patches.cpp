@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/patches.h"
+#include "parts/synthesis/patches.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "synthesis/synthesis.h"
+#include "parts/synthesis/synthesis.h"
 
 namespace parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/pyramid.h"
+#include "parts/synthesis/pyramid.h"
 
 #include <opencv2/imgproc.hpp>
 

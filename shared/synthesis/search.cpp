@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/search.h"
+#include "parts/synthesis/search.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "geometry/parallel.h"
+#include "parts/base/parallel.h"
 
 namespace parts {
 namespace {

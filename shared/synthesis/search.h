@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "synthesis/patches.h"
+#include "parts/synthesis/patches.h"
 
 namespace parts {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/synthesis.h"
+#include "parts/synthesis/synthesis.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
-#include "synthesis/level.h"
-#include "synthesis/pyramid.h"
+#include "parts/synthesis/level.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/progress.h"
+#include "parts/base/progress.h"
 
 /// Planes are completed from examples, patch by patch: the optimisation behind
 /// depth, back sides and colour (thesis 4.1, 5.1). It knows nothing of any of

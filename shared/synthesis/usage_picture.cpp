@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/usage_picture.h"
+#include "parts/synthesis/usage_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,10 +9,10 @@
 #include <iostream>
 #include <random>
 
-#include "align/align.h"
 #include "bench/measure.h"
 #include "bench/scenes.h"
-#include "geometry/mesh_io.h"
+#include "parts/align/align.h"
+#include "parts/io/mesh_io.h"
 #include "support/shapes.h"
 
 using namespace parts;

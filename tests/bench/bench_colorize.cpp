@@ -10,11 +10,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/measure.h"
-#include "colorize/colorize_depth.h"
-#include "colorize/colorize_mesh.h"
-#include "mappings/examples.h"
-#include "raster/mask.h"
-#include "render/surface_color.h"
+#include "parts/colorize/colorize_depth.h"
+#include "parts/colorize/colorize_mesh.h"
+#include "parts/examples/examples.h"
+#include "parts/render/mask.h"
+#include "parts/render/surface_color.h"
 
 using namespace parts;
 using namespace parts::bench;

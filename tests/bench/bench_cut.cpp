@@ -6,7 +6,7 @@
 
 #include "bench/measure.h"
 #include "bench/scenes.h"
-#include "compose/decision.h"
+#include "parts/cut/decision.h"
 
 using namespace parts;
 using namespace parts::bench;
@@ -32,17 +32,15 @@ Times cut_times(const Scene& scene, const Entry& entry, Cut cut, long& voxels) {
   const int resolution = *std::max_element(entry.dims.begin(), entry.dims.end()) - 2;
   Model a = make_model(scene.a, "A"), b = make_model(scene.b, "B");
   const Box volume = bounds(scene.a, scene.b);
-  ComposeOptions options;
-  options.cut = cut;
   double wall = 1e300;
   const auto whole = best_of([&] {
-    ComposeReport report;
+    CutReport report;
     Progress silent;
-    const Decision d = decide(a, b, volume, resolution, options, report, silent);
+    const Decision d = decide(a, b, volume, resolution, cut, 0, report, silent);
     if (report.grid != entry.dims || !d.labels.connected) throw std::logic_error("not the scene that was meant");
     wall = std::min(wall, report.cut_seconds), voxels = d.voxels.size();
   });
-  const auto voxelization = best_of([&] { joint_voxels(a, b, volume, resolution, options.threads); });
+  const auto voxelization = best_of([&] { joint_voxels(a, b, volume, resolution, 0); });
   return {wall, whole.cpu - voxelization.cpu};
 }
 

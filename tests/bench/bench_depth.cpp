@@ -14,15 +14,15 @@
 #include <random>
 
 #include "bench/measure.h"
-#include "database/model_database.h"
-#include "depth/alignment.h"
-#include "depth/gallery.h"
-#include "depth/reconstruct_depth.h"
-#include "depth/view_search.h"
-#include "mappings/examples.h"
-#include "raster/mask.h"
-#include "synthesis/level.h"
-#include "synthesis/pyramid.h"
+#include "parts/depth/alignment.h"
+#include "parts/depth/gallery.h"
+#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/view_search.h"
+#include "parts/examples/examples.h"
+#include "parts/io/model_database.h"
+#include "parts/render/mask.h"
+#include "parts/synthesis/level.h"
+#include "parts/synthesis/pyramid.h"
 
 using namespace parts;
 using namespace parts::bench;

@@ -27,10 +27,10 @@
 #include "bench/fill_cases.h"
 #include "bench/measure.h"
 #include "bench/rivals.h"
-#include "database/closest_face.h"
-#include "database/mend.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mlp_project.h"
+#include "parts/io/mesh_io.h"
+#include "parts/io/mlp_project.h"
+#include "parts/mend/mend.h"
+#include "parts/spatial/closest_face.h"
 
 namespace {
 

@@ -9,9 +9,9 @@
 
 #include "bench/measure.h"
 #include "bench/scenes.h"
-#include "mincut/labels.h"
-#include "mincut/max_flow.h"
-#include "voxel/rasterize.h"
+#include "parts/cut/labels.h"
+#include "parts/cut/max_flow.h"
+#include "parts/cut/rasterize.h"
 
 using namespace parts;
 using namespace parts::bench;

@@ -13,10 +13,10 @@
 
 #include "bench/fill_cases.h"
 #include "bench/measure.h"
-#include "database/search.h"
-#include "geometry/attributes.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mlp_project.h"
+#include "parts/io/mesh_io.h"
+#include "parts/io/mlp_project.h"
+#include "parts/mesh/attributes.h"
+#include "parts/search/search.h"
 #include "support/busts.h"
 #include "support/shapes.h"
 

@@ -20,7 +20,7 @@
 #include "bench/measure.h"
 #include "bench/scenes.h"
 #include "bench/seam_quality.h"
-#include "compose/constraint.h"
+#include "parts/compose/constraint.h"
 
 using namespace parts;
 using namespace parts::bench;

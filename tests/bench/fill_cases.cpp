@@ -8,11 +8,11 @@
 #include <fstream>
 #include <random>
 
-#include "database/closest_face.h"
-#include "geometry/attributes.h"
-#include "geometry/mesh_io.h"
-#include "geometry/prepare.h"
-#include "render/rasterize.h"
+#include "parts/io/mesh_io.h"
+#include "parts/mesh/attributes.h"
+#include "parts/mesh/prepare.h"
+#include "parts/render/rasterize.h"
+#include "parts/spatial/closest_face.h"
 #include "support/busts.h"
 
 namespace parts::bench {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "database/region.h"
-#include "geometry/mesh.h"
+#include "parts/mend/region.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts::bench {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "geometry/mesh_io.h"
+#include "parts/io/mesh_io.h"
 
 namespace parts::bench {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 /// MeshLab's own ways to close holes, by the staged meshlabserver.
 /// @param folder  where the files that pass between go

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "compose/constraint.h"
+#include "parts/compose/constraint.h"
 
 namespace parts::bench {
 namespace {

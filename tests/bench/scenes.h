@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "compose/compose.h"
+#include "parts/compose/compose.h"
 
 namespace parts::bench {
 

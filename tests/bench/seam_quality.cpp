@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "geometry/edges.h"
+#include "parts/mesh/edges.h"
 
 namespace parts::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "compose/compose.h"
+#include "parts/compose/compose.h"
 #include "support/shapes.h"
 
 namespace parts::test {

@@ -2,7 +2,7 @@
 // Cameras as the host's shots, and back.
 #include <gtest/gtest.h>
 
-#include "host/cameras.h"
+#include "parts/host/cameras.h"
 #include "support/cameras.h"
 
 namespace parts::host {

@@ -5,7 +5,7 @@
 
 #include <QDir>
 
-#include "host/layers.h"
+#include "parts/host/layers.h"
 
 namespace parts::host {
 namespace {

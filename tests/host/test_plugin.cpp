@@ -5,8 +5,8 @@
 #include <QApplication>
 #include <QFileInfo>
 
-#include "geometry/error.h"
-#include "host/plugin.h"
+#include "parts/base/error.h"
+#include "parts/host/plugin.h"
 
 namespace parts::host {
 namespace {

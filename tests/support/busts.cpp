@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/attributes.h"
+#include "parts/mesh/attributes.h"
 #include "support/bust_field.h"
 #include "support/remesh.h"
 #include "support/shapes.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 /// A class of shapes of the project's own: stylised human busts, for tests and
 /// demonstrations of what needs a database of similar models.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/camera.h"
+#include "parts/render/camera.h"
 
 namespace parts {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/attributes.h"
+#include "parts/mesh/attributes.h"
 
 namespace parts::test {
 namespace {

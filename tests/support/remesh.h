@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 namespace parts::test {
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "parts/mesh/mesh.h"
 
 /// Shapes for tests and benchmarks: closed, oriented outwards, without
 /// self-intersections unless a line says otherwise.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "align/align.h"
+#include "parts/align/align.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 #include "support/shapes.h"
 
 namespace parts::test {

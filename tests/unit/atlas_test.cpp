@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/atlas.h"
+#include "parts/render/atlas.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 #include "support/shapes.h"
 
 namespace parts::test {

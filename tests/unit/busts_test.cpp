@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/self_intersections.h"
-#include "geometry/topology.h"
+#include "parts/mesh/self_intersections.h"
+#include "parts/mesh/topology.h"
 
 namespace parts::test {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/camera.h"
+#include "parts/render/camera.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 #include "support/cameras.h"
 
 namespace parts {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/clip.h"
+#include "parts/seam/clip.h"
 
-#include "compose/loops.h"
+#include "parts/mesh/loops.h"
 #include "unit/compose_support.h"
 
 namespace parts::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "colorize/colorize_mesh.h"
+#include "parts/colorize/colorize_mesh.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
+#include "parts/base/error.h"
+#include "parts/io/mesh_io.h"
 #include "support/shapes.h"
 
 namespace parts::test {

@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "colorize/colorize_depth.h"
-#include "geometry/error.h"
-#include "synthesis/usage_picture.h"
+#include "parts/base/error.h"
+#include "parts/colorize/colorize_depth.h"
+#include "parts/synthesis/usage_picture.h"
 
 namespace parts::test {
 namespace {

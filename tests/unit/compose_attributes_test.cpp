@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/attributes.h"
+#include "parts/mesh/attributes.h"
 #include "unit/compose_support.h"
 
 namespace parts::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <limits>
 
-#include "geometry/attributes.h"
+#include "parts/mesh/attributes.h"
 #include "unit/compose_support.h"
 
 namespace parts::test {

@@ -6,9 +6,9 @@
 #include <set>
 #include <string>
 
-#include "compose/compose.h"
-#include "geometry/self_intersections.h"
-#include "geometry/topology.h"
+#include "parts/compose/compose.h"
+#include "parts/mesh/self_intersections.h"
+#include "parts/mesh/topology.h"
 #include "support/shapes.h"
 
 namespace parts::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/constraint.h"
+#include "parts/compose/constraint.h"
 
 #include "unit/compose_support.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/deform.h"
+#include "parts/compose/deform.h"
 
 #include "unit/compose_support.h"
 

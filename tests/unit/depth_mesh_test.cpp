@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/depth_mesh.h"
+#include "parts/render/depth_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/error.h"
-#include "geometry/topology.h"
-#include "raster/raster_io.h"
-#include "render/rasterize.h"
+#include "parts/base/error.h"
+#include "parts/io/raster_io.h"
+#include "parts/mesh/topology.h"
+#include "parts/render/rasterize.h"
 #include "support/cameras.h"
 #include "support/shapes.h"
 

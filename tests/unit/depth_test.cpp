@@ -4,13 +4,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "depth/alignment.h"
-#include "depth/reconstruct_depth.h"
-#include "depth/segment.h"
-#include "geometry/error.h"
-#include "mappings/render_example.h"
+#include "parts/base/error.h"
+#include "parts/depth/alignment.h"
+#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/segment.h"
+#include "parts/examples/render_example.h"
+#include "parts/synthesis/pyramid.h"
 #include "support/shapes.h"
-#include "synthesis/pyramid.h"
 
 namespace parts::test {
 namespace {

@@ -8,13 +8,13 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mlp_project.h"
-#include "mappings/build_mappings.h"
-#include "mappings/examples.h"
-#include "mappings/mlp_camera.h"
-#include "raster/raster_io.h"
+#include "parts/base/error.h"
+#include "parts/examples/build_mappings.h"
+#include "parts/examples/examples.h"
+#include "parts/io/mesh_io.h"
+#include "parts/io/mlp_project.h"
+#include "parts/io/raster_io.h"
+#include "parts/render/mlp_camera.h"
 #include "support/cameras.h"
 #include "support/shapes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/mesh_io.h"
+#include "parts/io/mesh_io.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "geometry/error.h"
-#include "geometry/topology.h"
+#include "parts/base/error.h"
+#include "parts/mesh/topology.h"
 #include "support/shapes.h"
 
 namespace parts {

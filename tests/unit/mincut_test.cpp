@@ -5,9 +5,10 @@
 
 #include <cstdlib>
 
-#include "compose/volume.h"
-#include "mincut/isolated.h"
-#include "mincut/labels.h"
+#include "parts/base/error.h"
+#include "parts/cut/isolated.h"
+#include "parts/cut/labels.h"
+#include "parts/cut/volume.h"
 #include "support/shapes.h"
 
 namespace parts::test {

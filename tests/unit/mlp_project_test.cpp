@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/mlp_project.h"
+#include "parts/io/mlp_project.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 
 namespace parts {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "database/model_cache.h"
+#include "parts/search/model_cache.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "geometry/mesh_io.h"
+#include "parts/io/mesh_io.h"
 #include "support/shapes.h"
 
 namespace parts {

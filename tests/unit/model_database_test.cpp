@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "database/model_database.h"
+#include "parts/io/model_database.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,10 +8,10 @@
 #include <fstream>
 #include <limits>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mlp_project.h"
-#include "geometry/topology.h"
+#include "parts/base/error.h"
+#include "parts/io/mesh_io.h"
+#include "parts/io/mlp_project.h"
+#include "parts/mesh/topology.h"
 #include "support/shapes.h"
 
 namespace parts {

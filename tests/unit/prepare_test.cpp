@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/prepare.h"
+#include "parts/mesh/prepare.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/topology.h"
+#include "parts/mesh/topology.h"
 #include "support/shapes.h"
 
 namespace parts::test {

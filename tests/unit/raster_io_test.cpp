@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/raster_io.h"
+#include "parts/io/raster_io.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
-#include "geometry/error.h"
-#include "raster/image_size.h"
-#include "voxel/memory.h"
+#include "parts/base/error.h"
+#include "parts/base/memory.h"
+#include "parts/io/image_size.h"
 
 namespace parts {
 namespace {

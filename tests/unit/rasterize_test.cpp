@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/rasterize.h"
+#include "parts/render/rasterize.h"
 
 #include <gtest/gtest.h>
 

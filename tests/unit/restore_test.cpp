@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "compose_support.h"
-#include "database/closest_face.h"
-#include "database/mend.h"
-#include "geometry/attributes.h"
-#include "geometry/mesh_io.h"
-#include "geometry/prepare.h"
+#include "parts/io/mesh_io.h"
+#include "parts/mend/mend.h"
+#include "parts/mesh/attributes.h"
+#include "parts/mesh/prepare.h"
+#include "parts/spatial/closest_face.h"
 #include "support/busts.h"
 
 namespace parts::test {

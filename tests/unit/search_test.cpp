@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "database/search.h"
+#include "parts/search/search.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <map>
 #include <set>
 
-#include "geometry/error.h"
-#include "geometry/mesh_io.h"
+#include "parts/base/error.h"
+#include "parts/io/mesh_io.h"
 #include "support/busts.h"
 #include "support/shapes.h"
 

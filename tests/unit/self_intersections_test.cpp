@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/self_intersections.h"
+#include "parts/mesh/self_intersections.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "geometry/predicates.h"
+#include "parts/mesh/predicates.h"
 #include "support/shapes.h"
 
 namespace parts {

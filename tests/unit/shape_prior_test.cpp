@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "database/shape_prior.h"
+#include "parts/mend/shape_prior.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include <numeric>
 
-#include "geometry/self_intersections.h"
-#include "geometry/topology.h"
+#include "parts/mesh/self_intersections.h"
+#include "parts/mesh/topology.h"
 
 namespace parts::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/stitch.h"
+#include "parts/seam/stitch.h"
 
 #include "unit/compose_support.h"
 

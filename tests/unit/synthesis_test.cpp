@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "synthesis/synthesis.h"
+#include "parts/synthesis/synthesis.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "synthesis/level.h"
-#include "synthesis/pyramid.h"
+#include "parts/synthesis/level.h"
+#include "parts/synthesis/pyramid.h"
 
 namespace parts::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/texture.h"
+#include "parts/render/texture.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "geometry/error.h"
+#include "parts/base/error.h"
 
 namespace parts {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/topology.h"
+#include "parts/mesh/topology.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compose/untangle.h"
+#include "parts/seam/untangle.h"
 
 #include "compose_support.h"
-#include "geometry/pinches.h"
+#include "parts/mesh/pinches.h"
 
 namespace parts::test {
 namespace {

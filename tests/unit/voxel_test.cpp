@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
+#include "parts/base/memory.h"
+#include "parts/cut/joint.h"
+#include "parts/cut/rasterize.h"
 #include "support/shapes.h"
-#include "voxel/joint.h"
-#include "voxel/memory.h"
-#include "voxel/rasterize.h"
 
 namespace parts::test {
 namespace {

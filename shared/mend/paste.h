@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "parts/mend/region.h"
+#include "parts/seam/seam.h"
+
+namespace parts {
+
+struct PasteOptions {
+  double size = 0;       ///< of the region, world units
+  double tolerance = 0;  ///< how far a model's surface may lie from the scan's and still be the same, world units
+  SeamSmoothing smoothing;
+  int threads = 0;
+};
+
+struct Pasted {
+  bool closed = false;  ///< the hole is gone and nothing new is open or non-manifold
+  Mesh mesh;
+  std::vector<char> face_from_model;        ///< per face: 0 the scan's, 1 the model's, 2 made by the stitch
+  int joined = 0, capped = 0, islands = 0;  ///< rims joined, borders closed, loose pieces in the hole dropped
+  long crossings = 0;                       ///< pairs of faces at the seam that cross
+  double seam_length = 0, seam_gap = 0;     ///< world units
+};
+
+/// Puts the part of a model that continues a scan into its hole. The scan stays
+/// as it is, to its rim; the model is clipped along the rim (where its nearest
+/// point on the scan is on the border), stitched to it, and smoothed beside it.
+/// Rims of other holes that the same part of the model reaches are joined too.
+/// @param scan  prepared: welded, its faces oriented
+/// @param model fitted to the scan, welded, faces oriented as the scan's
+/// @param rim   the hole: closed, vertices in the faces' direction
+Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOptions& options);
+
+}  // namespace parts

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parts/mesh/loops.h"
+#include "parts/mesh/mesh.h"
+
+namespace parts {
+
+/// The ways to say where a scan is to be mended.
+enum class RegionBy {
+  Selection,  ///< its selected faces: the flaws, or faces beside the holes
+  Holes,      ///< around each of its holes
+  Box,
+};
+
+struct RegionOptions {
+  RegionBy by = RegionBy::Selection;
+  Box box;                     ///< with Box, world units
+  double margin = 0;           ///< good surface around flaw or hole, world units; 0 = 0.35 of its half diagonal
+                               ///< (none around a box that the user drew)
+  double longest_rim = 0;      ///< with Holes: longer ones are meant to be (a neck, a base), world units; 0 = fill all
+  bool leave_selected = true;  ///< with Holes: so are those at which a face is selected
+};
+
+/// A place to be mended.
+struct Region {
+  Box box;                 ///< flaw or hole and the margin around it
+  std::vector<char> flaw;  ///< per face of the scan: damaged; empty where only the box is known
+  std::vector<Loop> rims;  ///< of the holes in it; empty for a flaw
+  double size() const { return box.diagonal().norm() / 2; }
+};
+
+/// The closed borders of a surface, in the direction of its faces.
+std::vector<Loop> find_rims(const Mesh& scan);
+
+/// Of the rims of a scan that has changed, those that still hold an edge of the
+/// rims it had: a patch may join a rim in part, and numbers change.
+/// @param now, before  the scan; the rims are those of `before`
+std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<Loop>& rims);
+
+/// The flaws to be restored: one region for each group of selected faces, or
+/// the box. With Holes, as hole_regions().
+/// @throws UserError  nothing is selected, the box is none, or holds no surface
+std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options);
+
+/// The holes to be filled, one region each, the longest rim first.
+/// @throws UserError  there is no hole where the options say
+std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options);
+
+}  // namespace parts

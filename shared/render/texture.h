@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "parts/io/raster_io.h"
+
+namespace parts {
+
+/// Whether the host can show an image file on a mesh as it is: a PNG, JPEG or
+/// BMP of 8 bits a channel, held upright, with nothing transparent.
+/// @param image  what read_image(path) gave
+bool shows_as_texture(const std::string& path, const Image& image);
+
+/// Where a texture is written and what it must not replace.
+struct TextureTarget {
+  std::string file;                 ///< an image file that may be replaced; empty: one is found beside `beside`
+  std::string beside;               ///< the result's own file; "face.tif" gives face_texture.png
+  std::vector<std::string> inputs;  ///< files that are never replaced
+};
+
+/// Writes an image as a texture, the colours of the foreground extended over the
+/// rest, so that no background shows at silhouettes. Without target.file the name
+/// is the first of x_texture.png, x_texture_2.png ... that is free or has that
+/// very picture already.
+/// @return the file, absolute
+/// @throws UserError  target.file is an input, or it cannot be written
+std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const TextureTarget& target);
+
+/// The same as an image in memory.
+cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask);
+
+}  // namespace parts

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parts/mesh/mesh.h"
+
+namespace parts {
+
+/// How the seam is smoothed after stitching (thesis 3.2.5): positions are
+/// averaged with their neighbours'.
+struct SeamSmoothing {
+  int iterations = 3;
+  double distance = 0;  ///< world units from the seam up to which vertices move; 0 = two voxels
+  double weight = 0.5;  ///< 0..1, how far a vertex goes to its neighbours' mean
+};
+
+/// What stitching measured.
+struct SeamReport {
+  double seam_length = 0;  ///< world units
+  double seam_gap = 0;     ///< mean distance between the borders before stitching, world units
+  int loops_a = 0, loops_b = 0, loops_joined = 0, loops_capped = 0, loops_open = 0;
+  int pieces_joined = 0;    ///< strips between borders that do not pair off one to one
+  bool reversed_b = false;  ///< B's faces were turned to agree with A's
+};
+
+/// Which border a vertex was made for, as bits: 3 once the two are one.
+enum SeamSide : char { kNoSeam = 0, kBorderA = 1, kBorderB = 2 };
+
+/// How short edges at the seam must be to collapse, world units.
+struct SeamTidying {
+  double within = 0;  ///< along a border, and to its neighbours
+  double across = 0;  ///< from one border to the other
+};
+
+/// Removes slivers along a seam: short edges at seam vertices are collapsed
+/// where that keeps the surface manifold and turns no face over, first those
+/// from border to border, so that the two become one curve; then edges between
+/// seam faces are flipped where that opens the smallest angles. Vertices with
+/// fixed = 1 stay where they are, and so do faces at which no seam vertex lies.
+/// @param seam  per vertex: SeamSide bits, follow the vertices
+/// @param tag   per face, follows the faces
+void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, std::vector<char>& tag,
+               const SeamTidying& shortest);
+
+/// Evens the curve in which the two borders became one: its vertices go to and
+/// fro between their neighbours on it (Taubin 1995), which shortens nothing.
+void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, int iterations);
+
+/// Averages vertices near the seam with their neighbours (thesis 3.2.5). The
+/// effect fades from the seam to `distance`; fixed and boundary vertices stay.
+void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
+                 int iterations, double weight);
+
+}  // namespace parts

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parts/seam/untangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parts/cut/bits.h"
+#include "parts/cut/grid.h"
+#include "parts/mesh/attributes.h"
+#include "parts/mesh/edges.h"
+#include "parts/mesh/self_intersections.h"
+
+namespace parts {
+namespace {
+
+/// Calls visit(cell) for each cell of the grid that a face's box touches.
+template <class Visit>
+void for_each_cell(const Grid& grid, const Box& box, const Visit& visit) {
+  const Vec3 low = grid.to_grid(box.min()), high = grid.to_grid(box.max());
+  int from[3], to[3];
+  for (int d = 0; d < 3; ++d) {
+    from[d] = int(std::clamp(std::floor(low[d]), 0.0, double(grid.dims[d] - 1)));
+    to[d] = int(std::clamp(std::floor(high[d]), 0.0, double(grid.dims[d] - 1)));
+  }
+  for (int k = from[2]; k <= to[2]; ++k)
+    for (int j = from[1]; j <= to[1]; ++j)
+      for (int i = from[0]; i <= to[0]; ++i) visit(grid.index(i, j, k));
+}
+
+/// The faces near those that are asked about, as a mesh of their own.
+class Neighbourhood {
+ public:
+  Neighbourhood(const Mesh& mesh, const std::vector<char>& asked) : mesh_(mesh), asked_(asked) {
+    constexpr int kCells = 64;
+    Box all;
+    for (int f = 0; f < mesh.face_count(); ++f)
+      if (asked[f]) all.extend(mesh.face_box(f));
+    if (all.isEmpty() || !(all.sizes().maxCoeff() > 0)) return;
+    const Grid grid = Grid::over(all, kCells);
+    VoxelSet cells(grid.count());
+    for (int f = 0; f < mesh.face_count(); ++f)
+      if (asked[f]) for_each_cell(grid, mesh.face_box(f), [&](std::size_t c) { cells.add(c); });
+    std::vector<char> near(mesh.faces.size(), 0);
+    for (int f = 0; f < mesh.face_count(); ++f) {
+      const Box box = mesh.face_box(f);
+      if (!all.intersects(box)) continue;
+      for_each_cell(grid, box, [&](std::size_t c) { near[f] |= cells.has(c); });
+      if (near[f]) faces_.push_back(f);
+    }
+  }
+
+  /// Pairs of crossing faces, at least one of them asked about.
+  std::vector<std::array<int, 2>> crossings(int threads) const {
+    Mesh local;
+    local.vertices = mesh_.vertices;
+    for (int f : faces_) local.faces.push_back(mesh_.faces[f]);
+    std::vector<int> old_vertex;
+    local = take_faces(local, std::vector<char>(faces_.size(), 1), &old_vertex);
+    std::vector<std::array<int, 2>> pairs;
+    for (const auto& [f, g] : intersecting_faces(local, 0, threads))
+      if (asked_[faces_[f]] || asked_[faces_[g]]) pairs.push_back({faces_[f], faces_[g]});
+    return pairs;
+  }
+
+ private:
+  const Mesh& mesh_;
+  const std::vector<char>& asked_;
+  std::vector<int> faces_;
+};
+
+}  // namespace
+
+long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int threads) {
+  std::vector<char> asked(mesh.faces.size(), 0);
+  std::vector<std::vector<int>> around(mesh.vertices.size());
+  std::vector<char> free = movable;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    for (int v : mesh.faces[f]) asked[f] |= movable[v];
+  Mesh zone;
+  zone.vertices.resize(mesh.vertices.size());
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (asked[f]) zone.faces.push_back(mesh.faces[f]);
+  for_each_mesh_edge(sorted_half_edges(zone), [&](auto first, auto last) {
+    around[first->from].push_back(first->to), around[first->to].push_back(first->from);
+    // The zone's own border runs along vertices that do not move anyway.
+    if (last - first != 2) free[first->from] = free[first->to] = 0;
+  });
+
+  std::vector<Vec3> best;
+  long least = -1;
+  for (int round = 0;; ++round) {
+    const std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(threads);
+    if (least < 0 || long(pairs.size()) < least) least = long(pairs.size()), best = mesh.vertices;
+    if (pairs.empty() || round == rounds) break;
+    std::vector<char> moving(mesh.vertices.size(), 0);
+    for (const auto& pair : pairs)
+      for (int f : pair)
+        for (int v : mesh.faces[f]) moving[v] = 1;
+    for (int ring = 0; ring < round / 3; ++ring) {
+      const std::vector<char> inner = moving;
+      for (std::size_t v = 0; v < inner.size(); ++v)
+        if (inner[v])
+          for (int u : around[v]) moving[u] = 1;
+    }
+    std::vector<std::pair<int, Vec3>> to;
+    for (int step = 0; step < 3; ++step) {
+      to.clear();
+      for (int v = 0; v < mesh.vertex_count(); ++v) {
+        if (!moving[v] || !free[v] || around[v].empty()) continue;
+        Vec3 mean = Vec3::Zero();
+        for (int u : around[v]) mean += mesh.vertices[u];
+        to.emplace_back(v, 0.5 * mesh.vertices[v] + 0.5 / double(around[v].size()) * mean);
+      }
+      for (const auto& [v, p] : to) mesh.vertices[v] = p;
+    }
+  }
+  mesh.vertices = best;
+  return least;
+}
+
+}  // namespace parts

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "parts/io/model_database.h"
+#include "parts/search/model_raster.h"
+
+namespace parts {
+
+/// The rasterisations of a database's models, from files beside it where they
+/// are good, else made and put there (in the folder ".model-cache", one file a
+/// model). A file counts only if it was made by this version of the code for a
+/// model file of that size, time, content (a sample of it) and matrix, and is
+/// whole: anything else is made anew. Files are replaced at once (rename), so
+/// that runs at the same time do each other no harm.
+class ModelCache {
+ public:
+  struct Options {
+    int levels = 3;
+    bool files = true;  ///< false: nothing is read or written
+    int threads = 0;
+    int kept = 100;  ///< of more models than this, only the coarse levels stay in memory
+  };
+  /// @param database  kept by reference
+  ModelCache(const ModelDatabase& database, const Options& options);
+
+  /// Reads or makes all rasterisations. Models that cannot be used are logged,
+  /// "skipped: name (why)"; so is a folder that cannot be written.
+  void fill(Progress& progress);
+
+  /// Nothing for a model that cannot be used; at least its two coarsest levels. @pre filled
+  const ModelRaster* raster(int model) const { return rasters_[std::size_t(model)].get(); }
+  /// Brings back the finer levels. Not for two threads and one model at a time.
+  void complete(int model);
+
+  int made() const { return made_; }  ///< by fill, not read from files
+
+  /// What a file was made from.
+  struct Key {
+    std::uint64_t size = 0, time = 0, content = 0, matrix = 0, levels = 0;
+    bool operator==(const Key& k) const {
+      return size == k.size && time == k.time && content == k.content && matrix == k.matrix && levels == k.levels;
+    }
+  };
+  static std::string encode(const ModelRaster& raster, const Key& key);
+  /// Nothing if the bytes are not exactly what encode() makes for that key.
+  static std::unique_ptr<ModelRaster> decode(const std::string& bytes, const Key& key);
+
+ private:
+  std::string file(int model) const;
+  Key key(int model) const;
+  std::unique_ptr<ModelRaster> read(int model) const;
+  bool write(int model, const ModelRaster& raster, const Key& key) const;
+
+  const ModelDatabase& database_;
+  Options options_;
+  std::string folder_;
+  std::vector<std::unique_ptr<ModelRaster>> rasters_;
+  int made_ = 0;
+};
+
+}  // namespace parts
