@@ -42,8 +42,8 @@ std::vector<Parameter> parameters(const Scene&) {
 }
 
 /// Models are rendered without shading, about as large as the depth map.
-ExampleOptions rendering(cv::Size depth) {
-  ExampleOptions o;
+examples::ExampleOptions rendering(cv::Size depth) {
+  examples::ExampleOptions o;
   const double scale = std::min(1.0, double(kMostPixels) / std::max(depth.width, depth.height));
   o.width = std::clamp(int(depth.width * scale), 8, kMostPixels);
   o.height = std::clamp(int(depth.height * scale), 8, kMostPixels);
@@ -60,28 +60,28 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const bool add_mesh = inputs.flag("AddMesh");
   if (image_file.empty() && usage_file.empty() && !add_mesh)
     throw UserError("Nothing is asked for; name an ImageFile or a UsageFile, or switch AddMesh on.");
-  for (const std::string& file : {image_file, usage_file}) OutputFiles::check_image(file);
+  for (const std::string& file : {image_file, usage_file}) io::OutputFiles::check_image(file);
 
   progress.stage("Reading", 0, 5);
-  const cv::Mat depth = read_depth(depth_file);
+  const cv::Mat depth = io::read_depth(depth_file);
   Progress opening = progress.part(5, 20), coloring = progress.part(20, 90), meshing = progress.part(90, 98);
-  const auto source = open_examples(database, {View{}}, rendering(depth.size()), opening);
+  const auto source = examples::open_examples(database, {render::View{}}, rendering(depth.size()), opening);
   std::vector<std::string> kept = source->files();
   kept.insert(kept.end(), {depth_file, database});
   refuse_inputs(inputs, {"ImageFile", "UsageFile"}, kept);
-  ColorizeOptions options;
+  colorize::ColorizeOptions options;
   read_synthesis(inputs, source->preset(), slug, options);
-  const ColorizeResult result = colorize_depth(depth, *source, options, coloring);
+  const colorize::ColorizeResult result = colorize::colorize_depth(depth, *source, options, coloring);
 
-  OutputFiles files;
-  files.image(with_alpha(result.color, result.mask), image_file);
-  files.image(usage_picture(result.example), usage_file);
+  io::OutputFiles files;
+  files.image(io::with_alpha(result.color, result.mask), image_file);
+  files.image(synthesis::usage_picture(result.example), usage_file);
   Outcome outcome;
   if (add_mesh) {
-    const Camera camera = raster_camera(depth.size(), 1, 0);
-    DepthMesh made = depth_to_mesh(depth, {}, camera, {}, meshing);
+    const render::Camera camera = render::raster_camera(depth.size(), 1, 0);
+    render::DepthMesh made = render::depth_to_mesh(depth, {}, camera, {}, meshing);
     const std::string& beside = image_file.empty() ? depth_file : image_file;
-    made.mesh.textures = {write_texture(result.color, result.mask, {"", beside, kept})};
+    made.mesh.textures = {render::write_texture(result.color, result.mask, {"", beside, kept})};
     log_value(progress, "texture", made.mesh.textures[0]);
     outcome.layers.push_back({"Colorized", std::move(made.mesh), true, camera});
     outcome.current = 0;

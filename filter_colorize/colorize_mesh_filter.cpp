@@ -25,7 +25,7 @@ enum Target { kTexture, kVertexColor };
 enum Keep { kNothing, kSelectedFaces };
 
 std::vector<Parameter> parameters(const Scene&) {
-  const ColorizeMeshOptions o;
+  const colorize::ColorizeMeshOptions o;
   std::vector<Parameter> list{
       current_layer("Mesh", "Mesh", "The surface that is to be coloured. It stays as it is."),
       open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Database",
@@ -59,11 +59,11 @@ std::vector<Parameter> parameters(const Scene&) {
   return list;
 }
 
-ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh, const ClassPreset& preset) {
-  ColorizeMeshOptions o;
-  const ExampleOptions fallback;
+colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh, const io::ClassPreset& preset) {
+  colorize::ColorizeMeshOptions o;
+  const examples::ExampleOptions fallback;
   read_synthesis(inputs, preset, slug, o);
-  o.views = parse_views(inputs.text("Views"));
+  o.views = render::parse_views(inputs.text("Views"));
   o.up = class_direction(inputs, "Up", fallback.up, preset.up);
   o.front = class_direction(inputs, "Front", fallback.front, preset.front);
   o.rendering.up = preset.up.value_or(o.up);
@@ -75,7 +75,7 @@ ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh, const Cla
   if (inputs.choice("Keep") == kSelectedFaces) {
     if (std::count(mesh.face_selected.begin(), mesh.face_selected.end(), 1) == 0)
       throw UserError("No face is selected whose colours could be kept; select some, or set Keep to Nothing.");
-    if (!has_colors(mesh, load_textures(mesh)))
+    if (!render::has_colors(mesh, render::load_textures(mesh)))
       throw UserError("The mesh has no colours that could be kept; set Keep to Nothing.");
     o.keep = mesh.face_selected;
   }
@@ -92,21 +92,21 @@ void check_texture_size(int size) {
 }
 
 /// The mesh with a texture: its picture, its file.
-void add_texture(Mesh& mesh, const MeshColors& colors, const Inputs& inputs, const std::vector<std::string>& kept,
-                 Progress& progress) {
+void add_texture(Mesh& mesh, const colorize::MeshColors& colors, const Inputs& inputs,
+                 const std::vector<std::string>& kept, Progress& progress) {
   const int size = inputs.integer("TextureSize");
-  const std::string flaw = texture_coordinates_flaw(mesh, size);
+  const std::string flaw = render::texture_coordinates_flaw(mesh, size);
   const Mesh before = mesh;
   if (!flaw.empty()) {
-    Atlas atlas = make_atlas(mesh, size);
+    render::Atlas atlas = render::make_atlas(mesh, size);
     log_value(progress, "own_texture_coordinates", flaw);
     log_value(progress, "charts", atlas.charts);
     mesh.wedges = std::move(atlas.wedges);
   }
-  const BakedTexture baked = bake_texture(before, mesh.wedges, size, colors, 0);
+  const colorize::BakedTexture baked = colorize::bake_texture(before, mesh.wedges, size, colors, 0);
   std::string name = std::filesystem::path(inputs.layer("Mesh").name()).filename().string();
   if (name.empty()) name = "colorized";
-  mesh.textures = {write_texture(baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
+  mesh.textures = {render::write_texture(baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
   mesh.vertex_color.clear(), mesh.face_color.clear();
   log_value(progress, "texture", mesh.textures[0]);
 }
@@ -115,27 +115,27 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::string database = inputs.text("Database"), usage_file = inputs.text("UsageFile");
   if (database.empty()) throw UserError("No database is named; choose a project or a folder of coloured models.");
-  OutputFiles::check_image(inputs.text("TextureFile"));
-  OutputFiles::check_image(usage_file);
+  io::OutputFiles::check_image(inputs.text("TextureFile"));
+  io::OutputFiles::check_image(usage_file);
   if (inputs.choice("Target") == kTexture) check_texture_size(inputs.integer("TextureSize"));
   Mesh mesh = surface_of(inputs.layer("Mesh"));
   Progress opening = progress.part(0, 20), coloring = progress.part(20, 90);
   opening.stage("Reading the models", 0, 100);
-  const ModelDatabase listed(database, opening);
-  const ColorizeMeshOptions options = options_of(inputs, mesh, read_class_preset(listed.path()));
+  const io::ModelDatabase listed(database, opening);
+  const colorize::ColorizeMeshOptions options = options_of(inputs, mesh, io::read_class_preset(listed.path()));
   const auto models = recent_models(listed, options.views, options.rendering, opening);
   std::vector<std::string> kept = models->files();
   kept.insert(kept.end(), mesh.textures.begin(), mesh.textures.end());
   refuse_inputs(inputs, {"TextureFile", "UsageFile"}, kept);
 
-  const MeshColors colors = colorize_mesh(mesh, *models, options, coloring);
+  const colorize::MeshColors colors = colorize::colorize_mesh(mesh, *models, options, coloring);
   progress.stage("Writing", 90, 100);
-  OutputFiles files;
-  if (!usage_file.empty()) files.image(usage_picture(colors.example), usage_file);
+  io::OutputFiles files;
+  if (!usage_file.empty()) files.image(synthesis::usage_picture(colors.example), usage_file);
   if (inputs.choice("Target") == kTexture) {
     add_texture(mesh, colors, inputs, kept, progress);
   } else {
-    mesh.vertex_color = vertex_colors(colors);
+    mesh.vertex_color = colorize::vertex_colors(colors);
     mesh.wedges.clear(), mesh.textures.clear(), mesh.face_color.clear();
   }
   files.commit();

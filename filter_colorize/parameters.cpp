@@ -27,7 +27,7 @@ std::vector<std::string> labels(const std::string& text) {
 }  // namespace
 
 void add_synthesis(std::vector<Parameter>& list) {
-  const ColorizeOptions o;
+  const colorize::ColorizeOptions o;
   const Parameter all[] = {
       integer("Examples", o.examples, 1, 1000, "Examples",
               "How many objects give their colours. 1 morphs one image-map onto the new shape."),
@@ -52,11 +52,12 @@ void add_synthesis(std::vector<Parameter>& list) {
   list.insert(list.end(), std::begin(all), std::end(all));
 }
 
-void read_synthesis(const Inputs& inputs, const ClassPreset& preset, const char* slug, ColorizeOptions& o) {
+void read_synthesis(const Inputs& inputs, const io::ClassPreset& preset, const char* slug,
+                    colorize::ColorizeOptions& o) {
   const auto weight = [&](const char* name, double fallback) {
     return class_number(inputs, preset, slug, name, fallback);
   };
-  const ColorizeOptions d;
+  const colorize::ColorizeOptions d;
   o.examples = inputs.integer("Examples");
   o.choose = labels(inputs.text("Choose"));
   o.patch_sizes = parse_patch_sizes(class_text(inputs, preset, slug, "PatchSizes", patch_sizes));
@@ -71,7 +72,7 @@ void read_synthesis(const Inputs& inputs, const ClassPreset& preset, const char*
   o.seed = unsigned(inputs.integer("Seed"));
 }
 
-void log_report(const ColorizeReport& r, Progress& progress) {
+void log_report(const colorize::ColorizeReport& r, Progress& progress) {
   for (std::size_t k = 0; k < r.used.size(); ++k) {
     std::ostringstream line;
     line << r.used[k] << " " << r.shares[k];

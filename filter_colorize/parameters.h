@@ -9,8 +9,9 @@ namespace parts {
 /// What both filters ask about the synthesis: Examples ... Seed.
 void add_synthesis(std::vector<host::Parameter>& list);
 /// @param preset  what the class says where the user says nothing
-void read_synthesis(const host::Inputs& inputs, const ClassPreset& preset, const char* slug, ColorizeOptions& options);
+void read_synthesis(const host::Inputs& inputs, const io::ClassPreset& preset, const char* slug,
+                    colorize::ColorizeOptions& options);
 
-void log_report(const ColorizeReport& report, Progress& progress);
+void log_report(const colorize::ColorizeReport& report, Progress& progress);
 
 }  // namespace parts

@@ -12,11 +12,12 @@ namespace fs = std::filesystem;
 
 /// Of everything that the models are made from: names, sizes and dates of their
 /// files and of those beside them (materials, images).
-std::string fingerprint(const ModelDatabase& database, const std::vector<View>& views, const ExampleOptions& o) {
+std::string fingerprint(const io::ModelDatabase& database, const std::vector<render::View>& views,
+                        const examples::ExampleOptions& o) {
   std::ostringstream out;
   out.precision(17);
   out << database.path() << '\n' << o.width << ' ' << o.height << ' ' << o.up.transpose() << ' ' << o.front.transpose();
-  for (const View& view : views) out << ' ' << view.yaw << ',' << view.pitch;
+  for (const render::View& view : views) out << ' ' << view.yaw << ',' << view.pitch;
   std::set<fs::path> folders;
   for (int i = 0; i < database.size(); ++i) {
     out << '\n' << database.file(i) << ' ' << database.matrix(i);
@@ -38,11 +39,12 @@ std::string fingerprint(const ModelDatabase& database, const std::vector<View>& 
 
 }  // namespace
 
-std::shared_ptr<ClassModels> recent_models(const ModelDatabase& database, const std::vector<View>& views,
-                                           const ExampleOptions& options, Progress& progress) {
+std::shared_ptr<examples::ClassModels> recent_models(const io::ModelDatabase& database,
+                                                     const std::vector<render::View>& views,
+                                                     const examples::ExampleOptions& options, Progress& progress) {
   struct Recent {
     std::string fingerprint;
-    std::shared_ptr<ClassModels> models;
+    std::shared_ptr<examples::ClassModels> models;
     std::vector<std::string> said;
   };
   static Recent recent;  // the host runs one filter at a time
@@ -52,7 +54,7 @@ std::shared_ptr<ClassModels> recent_models(const ModelDatabase& database, const 
     std::vector<std::string> said;
     Progress reading([&](int percent, const char*) { return progress.at(percent / 100.), true; },
                      [&](const std::string& line) { said.push_back(line); });
-    auto models = std::make_shared<ClassModels>(database, views, options, reading);
+    auto models = std::make_shared<examples::ClassModels>(database, views, options, reading);
     recent = {std::move(now), std::move(models), std::move(said)};
   }
   for (const std::string& line : recent.said) progress.log(line);

@@ -9,7 +9,8 @@ namespace parts {
 
 /// The models of a database as last time, where nothing about it has changed:
 /// many filters of one script read it once. What reading it logged is logged again.
-std::shared_ptr<ClassModels> recent_models(const ModelDatabase& database, const std::vector<View>& views,
-                                           const ExampleOptions& options, Progress& progress);
+std::shared_ptr<examples::ClassModels> recent_models(const io::ModelDatabase& database,
+                                                     const std::vector<render::View>& views,
+                                                     const examples::ExampleOptions& options, Progress& progress);
 
 }  // namespace parts

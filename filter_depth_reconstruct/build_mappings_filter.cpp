@@ -11,7 +11,7 @@ namespace {
 using namespace host;
 
 std::vector<Parameter> parameters(const Scene&) {
-  const ExampleOptions options;
+  const examples::ExampleOptions options;
   return {
       open_file(
           "Models", {"mlp", "ply", "obj", "off", "stl"}, "Models",
@@ -41,20 +41,21 @@ std::vector<Parameter> parameters(const Scene&) {
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  ExampleOptions options;
+  examples::ExampleOptions options;
   options.width = inputs.integer("Width");
   options.height = inputs.integer("Height");
-  const std::vector<View> views = parse_views(inputs.text("Views"));
+  const std::vector<render::View> views = render::parse_views(inputs.text("Views"));
   options.light = inputs.point("Light");
   options.ambient = inputs.number("Ambient");
   options.back = inputs.flag("BackSide");
-  const ModelDatabase models(inputs.text("Models"), progress);
-  const ClassPreset preset = read_class_preset(models.path());
-  const ExampleOptions fallback;
+  const io::ModelDatabase models(inputs.text("Models"), progress);
+  const io::ClassPreset preset = io::read_class_preset(models.path());
+  const examples::ExampleOptions fallback;
   options.up = class_direction(inputs, "Up", fallback.up, preset.up);
   options.front = class_direction(inputs, "Front", fallback.front, preset.front);
 
-  const MappingsReport report = build_mappings(models, views, inputs.text("Output"), options, progress);
+  const examples::MappingsReport report =
+      examples::build_mappings(models, views, inputs.text("Output"), options, progress);
   log_value(progress, "objects", report.objects);
   log_value(progress, "views", double(views.size()));
   log_value(progress, "examples", report.examples);

@@ -46,7 +46,7 @@ std::vector<Parameter> parameters(const Scene&) {
 struct Input {
   cv::Mat depth, back;
   std::string image_file;
-  Image image;
+  io::Image image;
 };
 
 Input read(const Inputs& inputs, Progress& progress) {
@@ -56,12 +56,12 @@ Input read(const Inputs& inputs, Progress& progress) {
   if (scale == 0) throw UserError("DepthScale is 0, which makes all depths 0; give another value.");
   progress.stage("Reading", 0, 20);
   Input in;
-  in.depth = read_depth(depth, scale);
-  if (!back.empty()) in.back = read_depth(back, scale);
+  in.depth = io::read_depth(depth, scale);
+  if (!back.empty()) in.back = io::read_depth(back, scale);
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;
   progress.at(0.5);
-  in.image = read_image(in.image_file);
+  in.image = io::read_image(in.image_file);
   const cv::Size d = in.depth.size(), i = in.image.color.size();
   const double skew = std::abs(double(i.width) * d.height - double(i.height) * d.width);
   if (skew > std::max({i.width, i.height, d.width, d.height}))
@@ -73,30 +73,30 @@ Input read(const Inputs& inputs, Progress& progress) {
 
 /// The file that the mesh names as its texture.
 std::string texture_of(const Input& in, const Inputs& inputs) {
-  TextureTarget target{inputs.text("TextureFile"),
-                       inputs.text("Depth"),
-                       {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
-  if (target.file.empty() && shows_as_texture(in.image_file, in.image))
+  render::TextureTarget target{inputs.text("TextureFile"),
+                               inputs.text("Depth"),
+                               {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
+  if (target.file.empty() && render::shows_as_texture(in.image_file, in.image))
     return std::filesystem::absolute(in.image_file).lexically_normal().string();
-  return write_texture(in.image.color, in.image.mask, target);
+  return render::write_texture(in.image.color, in.image.mask, target);
 }
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const double pixel_size = inputs.number("PixelSize"), focal = inputs.number("FocalLength");
   const Input in = read(inputs, progress);
-  const Camera camera = raster_camera(in.depth.size(), pixel_size, focal);
+  const render::Camera camera = render::raster_camera(in.depth.size(), pixel_size, focal);
   Progress meshing = progress.part(20, 95);
-  DepthMesh result = depth_to_mesh(in.depth, in.back, camera, {inputs.length("MaxJump")}, meshing);
+  render::DepthMesh result = render::depth_to_mesh(in.depth, in.back, camera, {inputs.length("MaxJump")}, meshing);
   progress.stage("Texture", 95, 100);
 
   Outcome outcome;
-  Camera seen = camera;
+  render::Camera seen = camera;
   if (in.image_file.empty()) {
     result.mesh.wedges.clear();
   } else {
     const double finer = double(in.image.color.cols) / in.depth.cols;
-    seen = raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
+    seen = render::raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
     result.mesh.textures = {texture_of(in, inputs)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();

@@ -26,7 +26,7 @@ const std::vector<const char*> outputs{"DepthFile", "BackDepthFile", "UsageFile"
 constexpr int largest_frame = 800;  ///< pixels that examples are rendered in
 
 std::vector<Parameter> parameters(const Scene&) {
-  const DepthOptions o;
+  const depth::DepthOptions o;
   const std::string by_class = " At its default, the class's preset counts where the database has one.";
   return {
       open_file("Image", {"png", "jpg", "jpeg", "tif", "tiff", "bmp"}, "Image",
@@ -80,8 +80,8 @@ std::vector<Parameter> parameters(const Scene&) {
   };
 }
 
-DepthOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
-  DepthOptions o;
+depth::DepthOptions options_of(const Inputs& inputs, const io::ClassPreset& preset) {
+  depth::DepthOptions o;
   o.patch_sizes = parse_patch_sizes(class_text(inputs, preset, slug, "PatchSizes", "5,7,9"));
   o.examples = inputs.integer("Examples");
   o.intensity = class_number(inputs, preset, slug, "WeightIntensity", o.intensity);
@@ -96,14 +96,14 @@ DepthOptions options_of(const Inputs& inputs, const ClassPreset& preset) {
   o.back = inputs.flag("BackSide");
   o.max_iterations = inputs.integer("MaxIterations");
   o.seed = unsigned(inputs.integer("Seed"));
-  o.views = parse_views(inputs.text("Views"));
+  o.views = render::parse_views(inputs.text("Views"));
   return o;
 }
 
 struct Input {
   std::string file;
-  Image image;
-  DepthQuery query;
+  io::Image image;
+  depth::DepthQuery query;
 };
 
 Input read(const Inputs& inputs) {
@@ -118,25 +118,25 @@ Input read(const Inputs& inputs) {
     throw UserError("No database is named; choose a mapping database or a folder or project of models.");
   if (!inputs.text("BackDepthFile").empty() && !inputs.flag("BackSide"))
     throw UserError("BackDepthFile is named but BackSide is off; turn it on, or leave the name empty.");
-  in.image = read_image(in.file);
+  in.image = io::read_image(in.file);
   in.query.color = in.image.color;
   const std::string mask = inputs.text("Mask");
   if (!mask.empty())
-    in.query.mask = read_mask(mask, in.image.color.size());
+    in.query.mask = io::read_mask(mask, in.image.color.size());
   else if (in.image.has_alpha)
     in.query.mask = in.image.mask;
   refuse_inputs(inputs, outputs, {in.file, mask, inputs.text("Database")});
   for (const char* name : outputs) {
     const bool depth = name == std::string("DepthFile") || name == std::string("BackDepthFile");
-    (depth ? OutputFiles::check_depth : OutputFiles::check_image)(inputs.text(name));
+    (depth ? io::OutputFiles::check_depth : io::OutputFiles::check_image)(inputs.text(name));
   }
   return in;
 }
 
 /// The frame that models are rendered in, so that the object is about as large
 /// in it as in the image.
-cv::Size frame_for(const DepthQuery& query, bool align) {
-  cv::Mat mask = query.mask.empty() ? plain_background_mask(query.color) : query.mask;
+cv::Size frame_for(const depth::DepthQuery& query, bool align) {
+  cv::Mat mask = query.mask.empty() ? depth::plain_background_mask(query.color) : query.mask;
   cv::Size2d frame = query.color.size();
   cv::Mat points;
   if (!mask.empty()) cv::findNonZero(mask, points);
@@ -154,7 +154,7 @@ cv::Size frame_for(const DepthQuery& query, bool align) {
   return {std::max(64, int(std::lround(frame.width / shrink))), std::max(64, int(std::lround(frame.height / shrink)))};
 }
 
-std::string degrees(const View& v) {
+std::string degrees(const render::View& v) {
   std::ostringstream out;
   out.precision(3);
   out << v.yaw << "," << v.pitch;
@@ -162,7 +162,7 @@ std::string degrees(const View& v) {
 }
 
 /// What counted, of the user's values and the class's.
-void log_options(const DepthOptions& o, Progress& progress) {
+void log_options(const depth::DepthOptions& o, Progress& progress) {
   std::ostringstream sizes, weights;
   for (size_t l = 0; l < o.patch_sizes.size(); ++l) sizes << (l ? "," : "") << o.patch_sizes[l];
   weights << o.intensity << " " << o.high_frequency << " " << o.depth << " " << o.position;
@@ -170,7 +170,7 @@ void log_options(const DepthOptions& o, Progress& progress) {
   log_value(progress, "weights", weights.str());
 }
 
-void log_result(const DepthResult& r, Progress& progress) {
+void log_result(const depth::DepthResult& r, Progress& progress) {
   log_value(progress, "view", degrees(r.view));
   log_value(progress, "view_yaw", r.view.yaw);
   log_value(progress, "view_pitch", r.view.pitch);
@@ -211,18 +211,18 @@ void log_result(const DepthResult& r, Progress& progress) {
 }
 
 /// @return the texture's file
-std::string write_files(const DepthResult& r, const Input& in, const Inputs& inputs) {
-  OutputFiles files;
+std::string write_files(const depth::DepthResult& r, const Input& in, const Inputs& inputs) {
+  io::OutputFiles files;
   files.depth(r.depth, inputs.text("DepthFile"));
   files.depth(r.back_depth, inputs.text("BackDepthFile"));
-  files.image(usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
+  files.image(synthesis::usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
   files.image(r.mask, inputs.text("MaskFile"));
   std::string texture = inputs.text("TextureFile");
-  if (texture.empty() && shows_as_texture(in.file, in.image))
+  if (texture.empty() && render::shows_as_texture(in.file, in.image))
     texture = std::filesystem::absolute(in.file).lexically_normal().string();
   else
-    texture = write_texture(in.image.color, r.mask,
-                            {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
+    texture = render::write_texture(in.image.color, r.mask,
+                                    {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
   files.commit();
   return texture;
 }
@@ -232,20 +232,20 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   progress.stage("Reading", 0, 15);
   const Input in = read(inputs);
   const std::string database = inputs.text("Database");
-  ExampleOptions rendering;
+  examples::ExampleOptions rendering;
   const cv::Size frame = frame_for(in.query, inputs.flag("AlignQuery"));
   rendering.width = frame.width, rendering.height = frame.height;
   rendering.back = inputs.flag("BackSide");
   Progress opening = progress.part(0, 15);
-  const auto source = open_examples(database, parse_views(inputs.text("Views")), rendering, opening);
+  const auto source = examples::open_examples(database, render::parse_views(inputs.text("Views")), rendering, opening);
   refuse_inputs(inputs, outputs, source->files());
-  const DepthOptions options = options_of(inputs, source->preset());
+  const depth::DepthOptions options = options_of(inputs, source->preset());
 
   Progress core = progress.part(15, 90);
-  const DepthResult r = reconstruct_depth(in.query, *source, options, core);
+  const depth::DepthResult r = depth::reconstruct_depth(in.query, *source, options, core);
   progress.stage("Meshing", 90, 100);
   Progress meshing = progress.part(90, 98);
-  DepthMesh result = depth_to_mesh(r.depth, r.back_depth, r.camera, {}, meshing);
+  render::DepthMesh result = render::depth_to_mesh(r.depth, r.back_depth, r.camera, {}, meshing);
 
   result.mesh.textures = {write_files(r, in, inputs)};
 

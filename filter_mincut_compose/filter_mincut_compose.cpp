@@ -25,20 +25,21 @@ using host::surface_of;
 
 /// A value of ConstraintBy, then two points of a box.
 std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter, const Mesh& mesh, const char* model) {
-  return constrained_faces(mesh, ConstraintBy(inputs.choice(parameter.c_str())),
-                           inputs.point((parameter + "Min").c_str()), inputs.point((parameter + "Max").c_str()), model);
+  return compose::constrained_faces(mesh, compose::ConstraintBy(inputs.choice(parameter.c_str())),
+                                    inputs.point((parameter + "Min").c_str()),
+                                    inputs.point((parameter + "Max").c_str()), model);
 }
 
 /// The options that Compose and Deform have in common.
-ComposeOptions cut_options(const Inputs& inputs) {
-  ComposeOptions options;
+compose::ComposeOptions cut_options(const Inputs& inputs) {
+  compose::ComposeOptions options;
   options.resolution = inputs.integer("Resolution");
   switch (inputs.choice("Cut")) {
     case 0:
-      options.cut = Cut::Refined;
+      options.cut = cut::Cut::Refined;
       break;
     case 1:
-      options.cut = Cut::Thesis;
+      options.cut = cut::Cut::Thesis;
       break;
     default:
       throw UserError("The cut \"Mesh\" is not available yet; choose Refined or Thesis.");
@@ -55,7 +56,7 @@ Box volume_of(const Inputs& inputs) {
   return Box(min, max);
 }
 
-void log_report(const ComposeReport& r, const Mesh& composed, Progress& progress) {
+void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress& progress) {
   std::ostringstream grid;
   grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
   log_value(progress, "grid", grid.str());
@@ -78,10 +79,10 @@ void log_report(const ComposeReport& r, const Mesh& composed, Progress& progress
   log_value(progress, "seconds", r.seconds);
 }
 
-Outcome align(const Inputs& inputs, Progress& progress) {
+Outcome align_layer(const Inputs& inputs, Progress& progress) {
   const Layer moving = inputs.layer("MovingMesh"), fixed = inputs.layer("FixedMesh");
   if (moving == fixed) throw UserError("MovingMesh and FixedMesh are the same layer; choose two different layers.");
-  AlignOptions options;
+  align::AlignOptions options;
   options.coarse = inputs.choice("Coarse") == 0;
   options.allow_scale = inputs.flag("AllowScale");
   options.allow_mirror = inputs.flag("AllowMirror");
@@ -91,8 +92,8 @@ Outcome align(const Inputs& inputs, Progress& progress) {
 
   const Mesh a = surface_of(moving), b = surface_of(fixed);
   const std::vector<char> all;
-  const AlignResult result =
-      align_part_in_whole(a, selected ? a.face_selected : all, b, selected ? b.face_selected : all, options, progress);
+  const align::AlignResult result = align::align_part_in_whole(a, selected ? a.face_selected : all, b,
+                                                               selected ? b.face_selected : all, options, progress);
   std::ostringstream matrix;
   matrix.precision(9);
   for (int i = 0; i < 16; ++i) matrix << (i ? " " : "") << result.matrix(i / 4, i % 4);
@@ -112,16 +113,16 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   const Layer a = inputs.layer("MeshA"), b = inputs.layer("MeshB");
   if (a == b)
     throw UserError("MeshA and MeshB are the same layer; choose two different layers, or duplicate this one.");
-  ComposeOptions options = cut_options(inputs);
+  compose::ComposeOptions options = cut_options(inputs);
   options.volume = volume_of(inputs);
   options.stitch = inputs.flag("Stitch");
   options.transition_surface = inputs.flag("AddTransitionSurface");
   const bool clipped = inputs.flag("AddClippedLayers");
 
-  Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
+  cut::Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
   part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "model A");
   part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
-  ComposeResult result = compose(part_a, part_b, options, progress);
+  compose::ComposeResult result = compose::compose(part_a, part_b, options, progress);
   log_report(result.report, result.composed, progress);
   if (options.stitch && result.report.loops_joined + result.report.pieces_joined == 0)
     log_value(progress, "warning",
@@ -140,8 +141,8 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
 
 Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const Layer layer = inputs.layer("Mesh");
-  const ComposeOptions options = cut_options(inputs);
-  RigidPose pose;
+  const compose::ComposeOptions options = cut_options(inputs);
+  compose::RigidPose pose;
   pose.pivot = inputs.point("Pivot");
   pose.axis = inputs.point("Axis");
   pose.angle = inputs.number("Angle");
@@ -153,7 +154,7 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const Mesh mesh = surface_of(layer);
   const std::vector<char> fixed = kept_faces(inputs, "Fixed", mesh, "the fixed part");
   const std::vector<char> moving = kept_faces(inputs, "Moving", mesh, "the moving part");
-  std::vector<ComposeResult> results = deform(mesh, fixed, moving, pose, frames, options, progress);
+  std::vector<compose::ComposeResult> results = compose::deform(mesh, fixed, moving, pose, frames, options, progress);
 
   Outcome outcome;
   const std::string count = std::to_string(results.size());
@@ -180,7 +181,7 @@ std::vector<host::Filter> host::filters() {
                    "allow it: principal axes give first guesses, iterated closest points refine each, and the best "
                    "match wins.") +
            composition_reference,
-       align_parameters, align},
+       align_parameters, align_layer},
       {"Min-Cut: Compose Two Meshes", "compose", Menu::Remeshing,
        std::string("Joins two overlapping models into one, without a visible seam. Place the models so that they "
                    "overlap where they should be joined, and mark on each some faces that <b>must survive</b>. The "

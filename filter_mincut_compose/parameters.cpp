@@ -32,7 +32,7 @@ void add_constraint(const std::string& name, int by, const std::string& label, c
 
 /// What Compose and Deform have in common, in two places of their dialogs.
 void add_cut(std::vector<Parameter>& list) {
-  const ComposeOptions options;
+  const compose::ComposeOptions options;
   list.push_back(integer("Resolution", options.resolution, 0, 100000, "Resolution (voxels)",
                          "Voxels along the longest side of the volume in which the models are joined. More make a "
                          "finer seam and take longer. 0 chooses from the meshes and the free memory."));
@@ -45,7 +45,7 @@ void add_cut(std::vector<Parameter>& list) {
 }  // namespace
 
 std::vector<Parameter> align_parameters(const Scene&) {
-  const AlignOptions options;
+  const align::AlignOptions options;
   return {
       current_layer("MovingMesh", "Moving layer", "The layer that is moved as a whole."),
       other_layer("FixedMesh", "Fixed layer", "The layer that it is placed on; it does not change."),
@@ -73,7 +73,7 @@ std::vector<Parameter> align_parameters(const Scene&) {
 }
 
 std::vector<Parameter> compose_parameters(const Scene& scene) {
-  const ComposeOptions options;
+  const compose::ComposeOptions options;
   const Box volume = scene.current.merged(scene.other);
   std::vector<Parameter> list = {
       current_layer("MeshA", "Model A", "The first model."),
@@ -98,7 +98,7 @@ std::vector<Parameter> compose_parameters(const Scene& scene) {
 }
 
 std::vector<Parameter> deform_parameters(const Scene& scene) {
-  const RigidPose pose;
+  const compose::RigidPose pose;
   std::vector<Parameter> list = {current_layer("Mesh", "Model", "The model to bend; the result is a new layer.")};
   add_constraint("Fixed", 0, "Fixed part", "what stays where it is", list);
   add_constraint("Moving", 1, "Moving part", "what moves", list);

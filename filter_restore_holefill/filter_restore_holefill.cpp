@@ -22,9 +22,9 @@ using host::smoothing_of;
 using host::surface_of;
 
 /// What the three filters have in common.
-MendOptions query_options(const Inputs& inputs) {
-  MendOptions o;
-  o.region.by = RegionBy(inputs.choice("Region"));
+mend::MendOptions query_options(const Inputs& inputs) {
+  mend::MendOptions o;
+  o.region.by = mend::RegionBy(inputs.choice("Region"));
   // A box made from its corners as they are: one that is inside out is told so.
   o.region.box.min() = inputs.point("RegionMin"), o.region.box.max() = inputs.point("RegionMax");
   o.region.margin = inputs.length("Margin");
@@ -37,23 +37,23 @@ MendOptions query_options(const Inputs& inputs) {
   return o;
 }
 
-ModelDatabase database_of(const Inputs& inputs, Progress& progress) {
+io::ModelDatabase database_of(const Inputs& inputs, Progress& progress) {
   const std::string path = inputs.text("Database");
   if (path.empty())
     throw UserError("No model database is given; choose a MeshLab project (.mlp), or type the path of a folder.");
-  return ModelDatabase(path, progress);
+  return io::ModelDatabase(path, progress);
 }
 
 Outcome find(const Inputs& inputs, Progress& progress) {
   const Layer layer = inputs.layer("Mesh");
   const Mesh scan = surface_of(layer);
-  MendOptions options = query_options(inputs);
-  options.fill = options.region.by == RegionBy::Holes;
-  const ModelDatabase database = database_of(inputs, progress);
-  std::vector<Found> found = find_models(scan, database, options, progress);
+  mend::MendOptions options = query_options(inputs);
+  options.fill = options.region.by == mend::RegionBy::Holes;
+  const io::ModelDatabase database = database_of(inputs, progress);
+  std::vector<mend::Found> found = mend::find_models(scan, database, options, progress);
   Outcome outcome;
   const bool several = !found.empty() && found.back().region > 0;
-  for (Found& f : found) {
+  for (mend::Found& f : found) {
     const std::string where = several ? "Region " + std::to_string(f.region + 1) + ": " : "";
     outcome.layers.push_back({where + f.name, std::move(f.mesh), outcome.layers.empty()});
   }
@@ -65,21 +65,21 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   const auto start = std::chrono::steady_clock::now();
   const Layer layer = inputs.layer("Mesh");
   const Mesh scan = surface_of(layer);
-  MendOptions options = query_options(inputs);
+  mend::MendOptions options = query_options(inputs);
   options.fill = fill;
-  RestoreOptions& o = options.restore;
+  mend::RestoreOptions& o = options.restore;
   o.constraint_distance = inputs.number("ConstraintDistance");
   o.refine = inputs.flag("Refine");
   o.allow_scale = inputs.flag("AllowScale");
   o.resolution = inputs.integer("Resolution");
-  o.cut = inputs.choice("Cut") == 1 ? Cut::Thesis : Cut::Refined;
+  o.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Refined;
   o.smoothing = smoothing_of(inputs);
   o.fit_to_rim = inputs.flag("FitToRim");
   o.blend = inputs.integer("Blend");
   const bool add_candidate = inputs.flag("AddCandidate");
-  const ModelDatabase database = database_of(inputs, progress);
+  const io::ModelDatabase database = database_of(inputs, progress);
 
-  Mended mended = mend_scan(scan, database, options, progress);
+  mend::Mended mended = mend::mend_scan(scan, database, options, progress);
   log_value(progress, "regions", mended.regions);
   log_value(progress, "mended", mended.mended);
   log_value(progress, "faces", mended.mesh.face_count());
@@ -89,7 +89,8 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   outcome.layers.push_back({fill ? "Filled" : "Restored", std::move(mended.mesh)});
   outcome.current = 0;
   if (add_candidate)
-    for (Found& f : mended.candidates) outcome.layers.push_back({"Candidate " + f.name, std::move(f.mesh), false});
+    for (mend::Found& f : mended.candidates)
+      outcome.layers.push_back({"Candidate " + f.name, std::move(f.mesh), false});
   outcome.hidden = {layer};
   return outcome;
 }

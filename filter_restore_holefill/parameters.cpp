@@ -17,8 +17,8 @@ Parameter allow_scale(bool value) {
 }
 
 /// What all three filters begin with.
-std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates, const std::string& candidates_are) {
-  const SearchOptions search;
+std::vector<Parameter> query(const Scene& scene, mend::RegionBy by, int candidates, const std::string& candidates_are) {
+  const search::SearchOptions search;
   std::vector<Parameter> list = {current_layer("Mesh", "Scan", "The damaged or incomplete model.")};
   list.push_back(open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Model database",
                            "Complete models of the same kind: a MeshLab project (.mlp), or a folder of .ply, .obj, "
@@ -41,8 +41,8 @@ std::vector<Parameter> query(const Scene& scene, RegionBy by, int candidates, co
 
 /// What all three filters end with.
 void add_search(std::vector<Parameter>& list) {
-  const SearchOptions search;
-  const RegionOptions region;
+  const search::SearchOptions search;
+  const mend::RegionOptions region;
   list.push_back(flag("AnyRotation", search.any_rotation, "Models may lie any way",
                       "Tries every rotation of the models. Without it only rotations of up to about 30 degrees, which "
                       "is quicker and safer where scan and models share a frame."));
@@ -53,10 +53,10 @@ void add_search(std::vector<Parameter>& list) {
                       "With Around all holes: holes with a selected face at their rim stay open."));
 }
 
-std::vector<Parameter> mend(const Scene& scene, bool fill) {
-  const RestoreOptions o;
+std::vector<Parameter> mend_parameters(const Scene& scene, bool fill) {
+  const mend::RestoreOptions o;
   std::vector<Parameter> list =
-      query(scene, fill ? RegionBy::Holes : RegionBy::Selection, RestoreOptions().tries,
+      query(scene, fill ? mend::RegionBy::Holes : mend::RegionBy::Selection, mend::RestoreOptions().tries,
             "Of so many of the most similar models, the first that closes what is open is the base.");
   list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
                         "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
@@ -90,15 +90,15 @@ std::vector<Parameter> mend(const Scene& scene, bool fill) {
 }  // namespace
 
 std::vector<Parameter> find_parameters(const Scene& scene) {
-  const SearchOptions search;
+  const search::SearchOptions search;
   std::vector<Parameter> list =
-      query(scene, RegionBy::Selection, 3, "How many of the most similar models are taken, at most.");
+      query(scene, mend::RegionBy::Selection, 3, "How many of the most similar models are taken, at most.");
   list.push_back(allow_scale(search.allow_scale));
   add_search(list);
   return list;
 }
 
-std::vector<Parameter> restore_parameters(const Scene& scene) { return mend(scene, false); }
-std::vector<Parameter> fill_parameters(const Scene& scene) { return mend(scene, true); }
+std::vector<Parameter> restore_parameters(const Scene& scene) { return mend_parameters(scene, false); }
+std::vector<Parameter> fill_parameters(const Scene& scene) { return mend_parameters(scene, true); }
 
 }  // namespace parts

@@ -75,7 +75,7 @@ void write_bust(const Mesh& mesh, const cv::Mat& image, const std::string& file)
   if (!cv::imwrite(texture, image)) throw UserError("The image \"" + texture + "\" cannot be written.");
   Mesh named = mesh;
   named.textures = {texture};
-  write_mesh(named, file);
+  io::write_mesh(named, file);
 }
 
 void print_box(const char* name, const Vec3& center, double radius) {
@@ -107,7 +107,7 @@ void write_damaged(const Arguments& a) {
 
 void write_class(const Arguments& a) {
   fs::create_directories(a.folder);
-  MlpProject project;
+  io::MlpProject project;
   for (int i = 0; i < a.count; ++i) {
     char name[32];
     std::snprintf(name, sizeof name, "bust_%02d.ply", i);
@@ -117,7 +117,7 @@ void write_class(const Arguments& a) {
     write_bust(mesh, bust_texture(shape, mesh), file);
     project.meshes.push_back({name, file});
   }
-  if (a.count > 0) write_mlp(project, (fs::path(a.folder) / "busts.mlp").string());
+  if (a.count > 0) io::write_mlp(project, (fs::path(a.folder) / "busts.mlp").string());
 }
 
 }  // namespace

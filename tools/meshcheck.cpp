@@ -20,10 +20,10 @@ const char kUsage[] =
 constexpr long kEnough = 1000000;  // self-intersections, where a mesh lies on itself
 
 bool report(const char* file) {
-  const parts::Mesh mesh = parts::read_mesh(file);
-  const parts::MeshCheck c = parts::check(mesh);
-  const long crossings = parts::self_intersections(mesh, kEnough);
-  std::printf("file: %s\n%sself-intersections: %ld%s\n", file, parts::to_string(c).c_str(), crossings,
+  const parts::Mesh mesh = parts::io::read_mesh(file);
+  const parts::mesh::MeshCheck c = parts::mesh::check(mesh);
+  const long crossings = parts::mesh::self_intersections(mesh, kEnough);
+  std::printf("file: %s\n%sself-intersections: %ld%s\n", file, parts::mesh::to_string(c).c_str(), crossings,
               crossings == kEnough ? " or more" : "");
   return c.closed() && c.oriented() && c.manifold() && c.degenerate_faces == 0 && crossings == 0;
 }

@@ -112,7 +112,7 @@ Arguments parse(int argc, char** argv) {
 /// What one cell shows.
 struct Model {
   Mesh mesh;
-  Textures textures;
+  render::Textures textures;
   std::string label;
 };
 
@@ -170,7 +170,7 @@ Model load(const std::string& cell, const Arguments& a) {
   Model model;
   const std::vector<std::string> files = files_of(cell);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    Mesh mesh = read_mesh(files[i]);
+    Mesh mesh = io::read_mesh(files[i]);
     add_normals(mesh);
     model.label += (i ? " + " : "") + std::filesystem::path(files[i]).stem().string();
     if (files.size() > 1) {
@@ -180,7 +180,7 @@ Model load(const std::string& cell, const Arguments& a) {
       model.mesh = std::move(mesh);
     }
   }
-  model.textures = load_textures(model.mesh);
+  model.textures = render::load_textures(model.mesh);
   return model;
 }
 
@@ -193,17 +193,17 @@ Box finite_bounds(const Mesh& mesh) {
 }
 
 /// Moves and scales the camera to what it sees rather than to its box.
-Camera framed(const Model& model, const Eigen::Matrix3d& rotation, const Arguments& a, const Box& common) {
+render::Camera framed(const Model& model, const Eigen::Matrix3d& rotation, const Arguments& a, const Box& common) {
   const int pixels = a.size * kOversampling;
   const Box box = finite_bounds(model.mesh);
   if (!a.zoom.isEmpty()) {
-    Camera camera = orthographic_camera(rotation, a.zoom, pixels, pixels);
+    render::Camera camera = render::orthographic_camera(rotation, a.zoom, pixels, pixels);
     camera.scale = pixels / a.zoom.sizes().x();
     camera.eye += rotation.row(2).transpose() * box.merged(a.zoom).diagonal().norm();
     return camera;
   }
-  if (a.same_frame) return orthographic_camera(rotation, common, pixels, pixels);
-  Camera camera = orthographic_camera(rotation, box, pixels, pixels);
+  if (a.same_frame) return render::orthographic_camera(rotation, common, pixels, pixels);
+  render::Camera camera = render::orthographic_camera(rotation, box, pixels, pixels);
   Eigen::AlignedBox2d seen;
   for (const Triangle& t : model.mesh.faces)
     for (int v : t)
@@ -219,7 +219,7 @@ Camera framed(const Model& model, const Eigen::Matrix3d& rotation, const Argumen
 /// Darkens what lies deeper than its surroundings: the depth's difference from
 /// its mean around (Luft et al., "Image Enhancement by Unsharp Masking the Depth
 /// Buffer", 2006).
-void deepen_creases(cv::Mat& image, const Rendering& seen, const Camera& camera) {
+void deepen_creases(cv::Mat& image, const render::Rendering& seen, const render::Camera& camera) {
   const double reach = image.cols * 0.02;  // pixels
   cv::Mat inside, depth, mean, weight;
   seen.mask.convertTo(inside, CV_32F, 1 / 255.);
@@ -236,8 +236,8 @@ void deepen_creases(cv::Mat& image, const Rendering& seen, const Camera& camera)
     }
 }
 
-cv::Mat draw(const Model& model, const Camera& camera, const Arguments& a) {
-  RenderOptions options;
+cv::Mat draw(const Model& model, const render::Camera& camera, const Arguments& a) {
+  render::RenderOptions options;
   options.smooth = !a.flat;
   options.colors = !a.plain;
   options.base = {222, 224, 230, 255};
@@ -247,7 +247,7 @@ cv::Mat draw(const Model& model, const Camera& camera, const Arguments& a) {
   options.rim = 0.3;
   options.mark_back_faces = a.mark_back;
   options.edge_width = a.edges ? 0.35 * kOversampling : 0;
-  Rendering large = render(model.mesh, model.textures, camera, options);
+  render::Rendering large = render::render(model.mesh, model.textures, camera, options);
   deepen_creases(large.image, large, camera);
   cv::Mat image;
   cv::resize(large.image, image, cv::Size(a.size, a.size), 0, 0, cv::INTER_AREA);
@@ -263,7 +263,7 @@ void write_label(cv::Mat& sheet, const std::string& text, const cv::Rect& strip)
 }
 
 void run(const Arguments& a) {
-  const std::vector<View> views = parse_views(a.views);
+  const std::vector<render::View> views = render::parse_views(a.views);
   std::vector<Model> models;
   Box common;
   for (const std::string& cell : a.cells) {
@@ -276,7 +276,7 @@ void run(const Arguments& a) {
   cv::Mat sheet(rows * (a.size + strip), std::min(columns, cells) * a.size, CV_8UC3, cv::Scalar(255, 255, 255));
   for (int i = 0; i < cells; ++i) {
     const Model& model = models[i / views.size()];
-    const Eigen::Matrix3d rotation = view_rotation(views[i % views.size()], a.up, a.front);
+    const Eigen::Matrix3d rotation = render::view_rotation(views[i % views.size()], a.up, a.front);
     const cv::Rect place(i % columns * a.size, i / columns * (a.size + strip), a.size, a.size);
     draw(model, framed(model, rotation, a, common), a).copyTo(sheet(place));
     if (a.label) write_label(sheet, model.label, {place.x, place.y + a.size, a.size, strip});

@@ -10,7 +10,7 @@
 #include "parts/base/parallel.h"
 #include "parts/base/tasks.h"
 
-namespace parts {
+namespace parts::align {
 namespace {
 
 // A level of the search: each takes more samples and leaves fewer poses.
@@ -46,7 +46,7 @@ struct Candidate {
 
 class Search {
  public:
-  Search(const Surface& moving, const Surface& fixed, const AlignOptions& options, Progress& progress)
+  Search(const spatial::Surface& moving, const spatial::Surface& fixed, const AlignOptions& options, Progress& progress)
       : options_(options),
         progress_(progress),
         threads_(thread_count(options.threads)),
@@ -70,7 +70,7 @@ class Search {
   const AlignOptions& options_;
   Progress& progress_;
   int threads_;
-  const Surface &moving_, &fixed_;
+  const spatial::Surface &moving_, &fixed_;
   Comparison compare_;
 };
 
@@ -95,11 +95,12 @@ std::vector<double> Search::start_scales() const {
 
 std::vector<Candidate> Search::coarse_candidates() const {
   const int samples = 1024, all_levels = int(std::size(kLevels));
-  const std::vector<Sample> fixed(compare_.fixed_samples().begin(), compare_.fixed_samples().begin() + samples);
+  const std::vector<spatial::Sample> fixed(compare_.fixed_samples().begin(),
+                                           compare_.fixed_samples().begin() + samples);
   std::vector<Candidate> candidates{{current(), all_levels}};
   for (int mirrored = 0; mirrored <= int(options_.allow_mirror); ++mirrored) {
-    const std::vector<Sample>& all = compare_.moving_samples(mirrored);
-    const std::vector<Sample> moving(all.begin(), all.begin() + samples);
+    const std::vector<spatial::Sample>& all = compare_.moving_samples(mirrored);
+    const std::vector<spatial::Sample> moving(all.begin(), all.begin() + samples);
     const Vec3 flip(mirrored ? -1 : 1, 1, 1);
     const Eigen::Matrix3d covariance = flip.asDiagonal() * moving_.covariance * flip.asDiagonal();
     for (double scale : start_scales()) {
@@ -233,9 +234,9 @@ AlignResult align_part_in_whole(const Mesh& moving, const std::vector<char>& mov
   if (!(options.overlap > 0 && options.overlap <= 1))
     throw UserError("The overlap must be above 0 and at most 1: set the share of the part that should match.");
   progress.stage("Measuring the parts", 0, 10);
-  const Surface m = make_surface(moving, moving_part, "moving");
+  const spatial::Surface m = spatial::make_surface(moving, moving_part, "moving");
   progress.at(0.3);
-  const Surface f = make_surface(fixed, fixed_part, "fixed");
+  const spatial::Surface f = spatial::make_surface(fixed, fixed_part, "fixed");
   progress.at(0.6);
   Search search(m, f, options, progress);
   progress.at(1);
@@ -244,4 +245,4 @@ AlignResult align_part_in_whole(const Mesh& moving, const std::vector<char>& mov
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::align

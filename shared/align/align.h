@@ -6,7 +6,7 @@
 #include "parts/base/progress.h"
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::align {
 
 struct AlignOptions {
   bool coarse = true;         ///< look for the placement from any start; false: refine where the models are
@@ -43,4 +43,4 @@ struct AlignResult {
 AlignResult align_part_in_whole(const Mesh& moving, const std::vector<char>& moving_part, const Mesh& fixed,
                                 const std::vector<char>& fixed_part, const AlignOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::align

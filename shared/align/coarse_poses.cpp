@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace parts {
+namespace parts::align {
 namespace {
 
 constexpr int kSpreadRotations = 192;  // about 30 degrees from any rotation to the next of them
@@ -17,7 +17,7 @@ struct Anchor {
 };
 
 /// The share of the samples closest to seed.
-Anchor piece_around(const Vec3& seed, const std::vector<Sample>& samples, double share) {
+Anchor piece_around(const Vec3& seed, const std::vector<spatial::Sample>& samples, double share) {
   std::vector<std::pair<double, int>> near(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) near[i] = {(samples[i].point - seed).squaredNorm(), int(i)};
   const int n = std::clamp(int(share * double(samples.size())), 8, int(samples.size()));
@@ -30,11 +30,11 @@ Anchor piece_around(const Vec3& seed, const std::vector<Sample>& samples, double
     const Vec3 d = samples[near[i].second].point - mean;
     covariance += d * d.transpose();
   }
-  return {mean, principal_axes(covariance)};
+  return {mean, spatial::principal_axes(covariance)};
 }
 
 /// Pieces of the given share, grown around seeds far from each other; enough to overlap well.
-std::vector<Anchor> pieces(const std::vector<Sample>& samples, double share) {
+std::vector<Anchor> pieces(const std::vector<spatial::Sample>& samples, double share) {
   std::vector<Anchor> found;
   std::vector<double> distance(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) distance[i] = samples[i].point.squaredNorm();
@@ -50,9 +50,9 @@ std::vector<Anchor> pieces(const std::vector<Sample>& samples, double share) {
 }
 
 /// The middle of the box along the principal axes.
-Vec3 box_center(const std::vector<Sample>& samples, const Eigen::Matrix3d& axes) {
+Vec3 box_center(const std::vector<spatial::Sample>& samples, const Eigen::Matrix3d& axes) {
   Box box;
-  for (const Sample& s : samples) box.extend(axes.transpose() * s.point);
+  for (const spatial::Sample& s : samples) box.extend(axes.transpose() * s.point);
   return axes * box.center();
 }
 
@@ -100,8 +100,8 @@ std::vector<CoarsePose> coarse_poses(const CoarseSurface& moving, const CoarseSu
     for (const Eigen::Matrix3d& r : spread) add(r, false);
   };
 
-  const Anchor whole_moving{Vec3::Zero(), principal_axes(moving.covariance)};
-  const Anchor whole_fixed{Vec3::Zero(), principal_axes(fixed.covariance)};
+  const Anchor whole_moving{Vec3::Zero(), spatial::principal_axes(moving.covariance)};
+  const Anchor whole_fixed{Vec3::Zero(), spatial::principal_axes(fixed.covariance)};
   lay(whole_moving, whole_fixed, true);
   lay({box_center(moving.samples, whole_moving.axes), whole_moving.axes},
       {box_center(fixed.samples, whole_fixed.axes), whole_fixed.axes}, false);
@@ -118,4 +118,4 @@ std::vector<CoarsePose> coarse_poses(const CoarseSurface& moving, const CoarseSu
   return poses;
 }
 
-}  // namespace parts
+}  // namespace parts::align

@@ -6,7 +6,7 @@
 #include "parts/align/pose.h"
 #include "parts/spatial/surface.h"
 
-namespace parts {
+namespace parts::align {
 
 /// A coarse pose and where it comes from.
 struct CoarsePose {
@@ -16,7 +16,7 @@ struct CoarsePose {
 
 /// A surface as far as coarse poses look at it, in its own frame.
 struct CoarseSurface {
-  const std::vector<Sample>& samples;
+  const std::vector<spatial::Sample>& samples;
   Eigen::Matrix3d covariance;
   double area;
 };
@@ -37,4 +37,4 @@ std::vector<Eigen::Matrix3d> spread_rotations(int count);
 /// The 24 rotations of a cube.
 std::vector<Eigen::Matrix3d> axis_rotations();
 
-}  // namespace parts
+}  // namespace parts::align

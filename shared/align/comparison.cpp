@@ -6,7 +6,7 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::align {
 namespace {
 
 constexpr int kGridSamples = 6000, kGridCells = 48;
@@ -28,24 +28,25 @@ Pose inverse(const Pose& pose) {
 
 }  // namespace
 
-Comparison::Comparison(const Surface& moving, const Surface& fixed, double overlap)
+Comparison::Comparison(const spatial::Surface& moving, const spatial::Surface& fixed, double overlap)
     : moving_(moving), fixed_(fixed), overlap_(overlap), moving_tree_(moving), fixed_tree_(fixed) {
-  moving_samples_[0] = moving_samples_[1] = sample_surface(moving, kSamples);
-  fixed_samples_[0] = fixed_samples_[1] = sample_surface(fixed, kSamples);
-  for (std::vector<Sample>* mirrored : {&moving_samples_[1], &fixed_samples_[1]})
-    for (Sample& s : *mirrored) s.point[0] *= -1, s.normal[0] *= -1;
+  moving_samples_[0] = moving_samples_[1] = spatial::sample_surface(moving, kSamples);
+  fixed_samples_[0] = fixed_samples_[1] = spatial::sample_surface(fixed, kSamples);
+  for (std::vector<spatial::Sample>* mirrored : {&moving_samples_[1], &fixed_samples_[1]})
+    for (spatial::Sample& s : *mirrored) s.point[0] *= -1, s.normal[0] *= -1;
 }
 
 void Comparison::prepare_grids() {
-  moving_grid_ = std::make_unique<ClosestSampleGrid>(sample_surface(moving_, kGridSamples), kGridCells);
-  fixed_grid_ = std::make_unique<ClosestSampleGrid>(sample_surface(fixed_, kGridSamples), kGridCells);
+  moving_grid_ =
+      std::make_unique<spatial::ClosestSampleGrid>(spatial::sample_surface(moving_, kGridSamples), kGridCells);
+  fixed_grid_ = std::make_unique<spatial::ClosestSampleGrid>(spatial::sample_surface(fixed_, kGridSamples), kGridCells);
 }
 
-const ClosestPoint& Comparison::moving_target(bool exact) const {
-  return exact ? static_cast<const ClosestPoint&>(moving_tree_) : *moving_grid_;
+const spatial::ClosestPoint& Comparison::moving_target(bool exact) const {
+  return exact ? static_cast<const spatial::ClosestPoint&>(moving_tree_) : *moving_grid_;
 }
-const ClosestPoint& Comparison::fixed_target(bool exact) const {
-  return exact ? static_cast<const ClosestPoint&>(fixed_tree_) : *fixed_grid_;
+const spatial::ClosestPoint& Comparison::fixed_target(bool exact) const {
+  return exact ? static_cast<const spatial::ClosestPoint&>(fixed_tree_) : *fixed_grid_;
 }
 
 double Comparison::score(const Pose& pose, const Detail& detail) const {
@@ -59,8 +60,8 @@ double Comparison::score(const Pose& pose, const Detail& detail) const {
 
 IcpResult Comparison::refine(const Pose& start, const Detail& detail, const IcpOptions& options,
                              const std::function<void()>& poll) const {
-  const std::vector<Sample>& moving = moving_samples_[start.mirrored];
-  const ClosestPoint& fixed = fixed_target(detail.exact);
+  const std::vector<spatial::Sample>& moving = moving_samples_[start.mirrored];
+  const spatial::ClosestPoint& fixed = fixed_target(detail.exact);
   IcpResult result = icp(moving, fixed, start, options, poll);
   result.score = score(result.pose, detail);
   if (detail.other_sizes && !options.scale) {
@@ -78,7 +79,7 @@ IcpResult Comparison::refine(const Pose& start, const Detail& detail, const IcpO
 }
 
 std::vector<double> Comparison::distances(const Pose& pose, int threads) const {
-  const std::vector<Sample>& samples = moving_samples_[pose.mirrored];
+  const std::vector<spatial::Sample>& samples = moving_samples_[pose.mirrored];
   std::vector<double> d(samples.size());
   parallel_for(long(d.size()), threads, [&](long begin, long end) {
     int hint = 0;
@@ -91,4 +92,4 @@ std::vector<double> Comparison::distances(const Pose& pose, int threads) const {
   return d;
 }
 
-}  // namespace parts
+}  // namespace parts::align

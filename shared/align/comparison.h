@@ -6,7 +6,7 @@
 #include "parts/align/icp.h"
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::align {
 
 /// How finely poses are compared.
 struct Detail {
@@ -19,7 +19,7 @@ struct Detail {
 class Comparison {
  public:
   /// @param moving, fixed  are kept by reference
-  Comparison(const Surface& moving, const Surface& fixed, double overlap);
+  Comparison(const spatial::Surface& moving, const spatial::Surface& fixed, double overlap);
 
   /// Makes the grids that comparisons which are not exact need.
   void prepare_grids();
@@ -37,20 +37,20 @@ class Comparison {
   /// Distances from the fixed surface, sorted, in its unit; one a sample of the moving one.
   std::vector<double> distances(const Pose& pose, int threads) const;
 
-  const std::vector<Sample>& moving_samples(bool mirrored) const { return moving_samples_[mirrored]; }
-  const std::vector<Sample>& fixed_samples() const { return fixed_samples_[0]; }
+  const std::vector<spatial::Sample>& moving_samples(bool mirrored) const { return moving_samples_[mirrored]; }
+  const std::vector<spatial::Sample>& fixed_samples() const { return fixed_samples_[0]; }
 
   static constexpr int kSamples = 3000;  ///< at most, of each surface
 
  private:
-  const ClosestPoint& moving_target(bool exact) const;
-  const ClosestPoint& fixed_target(bool exact) const;
+  const spatial::ClosestPoint& moving_target(bool exact) const;
+  const spatial::ClosestPoint& fixed_target(bool exact) const;
 
-  const Surface &moving_, &fixed_;
+  const spatial::Surface &moving_, &fixed_;
   double overlap_;
-  TriangleTree moving_tree_, fixed_tree_;
-  std::unique_ptr<ClosestSampleGrid> moving_grid_, fixed_grid_;
-  std::vector<Sample> moving_samples_[2], fixed_samples_[2];  ///< as they are, mirrored
+  spatial::TriangleTree moving_tree_, fixed_tree_;
+  std::unique_ptr<spatial::ClosestSampleGrid> moving_grid_, fixed_grid_;
+  std::vector<spatial::Sample> moving_samples_[2], fixed_samples_[2];  ///< as they are, mirrored
 };
 
-}  // namespace parts
+}  // namespace parts::align

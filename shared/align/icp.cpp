@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace parts {
+namespace parts::align {
 namespace {
 
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
@@ -23,7 +23,8 @@ Eigen::Matrix3d rotation_of(const Vec3& v) {
 
 }  // namespace
 
-PoseScore::PoseScore(const std::vector<Sample>& moving, int samples, double overlap, const ClosestPoint& fixed)
+PoseScore::PoseScore(const std::vector<spatial::Sample>& moving, int samples, double overlap,
+                     const spatial::ClosestPoint& fixed)
     : moving_(moving), fixed_(fixed) {
   const int n = std::min(samples, int(moving.size()));
   pairs_.resize(n);
@@ -124,7 +125,7 @@ class IcpLoop {
   double start_scale_;
 };
 
-IcpResult icp(const std::vector<Sample>& moving, const ClosestPoint& fixed, const Pose& start,
+IcpResult icp(const std::vector<spatial::Sample>& moving, const spatial::ClosestPoint& fixed, const Pose& start,
               const IcpOptions& options, const std::function<void()>& poll) {
   PoseScore score(moving, options.samples, options.overlap, fixed);
   const IcpLoop loop(score, options, start.scale);
@@ -147,4 +148,4 @@ IcpResult icp(const std::vector<Sample>& moving, const ClosestPoint& fixed, cons
   return best;
 }
 
-}  // namespace parts
+}  // namespace parts::align

@@ -7,7 +7,7 @@
 #include "parts/align/pose.h"
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::align {
 
 struct IcpOptions {
   int samples = 1000;     ///< the first so many of the moving samples
@@ -27,21 +27,22 @@ struct IcpResult {
 /// How well a pose fits, without moving it: the score of IcpResult.
 class PoseScore {
  public:
-  PoseScore(const std::vector<Sample>& moving, int samples, double overlap, const ClosestPoint& fixed);
+  PoseScore(const std::vector<spatial::Sample>& moving, int samples, double overlap,
+            const spatial::ClosestPoint& fixed);
   double operator()(const Pose& pose);
 
  private:
   friend class IcpLoop;
   struct Pair {
     Vec3 moved;  ///< the sample, moved
-    Closest fixed;
+    spatial::Closest fixed;
     double agreement;  ///< cosine between the normals, whatever their signs
     double cost;       ///< squared distance and penalty
   };
   void match(const Pose& pose);
 
-  const std::vector<Sample>& moving_;
-  const ClosestPoint& fixed_;
+  const std::vector<spatial::Sample>& moving_;
+  const spatial::ClosestPoint& fixed_;
   std::vector<Pair> pairs_;
   std::vector<int> hints_;
   std::vector<int> order_;  ///< the kept pairs come first
@@ -53,7 +54,7 @@ class PoseScore {
 /// distance that keeps planes, spheres and the like from sliding, and normals
 /// that must agree. Never returns a pose that fits worse than the start.
 /// @param poll  called at each iteration; may throw to stop
-IcpResult icp(const std::vector<Sample>& moving, const ClosestPoint& fixed, const Pose& start,
+IcpResult icp(const std::vector<spatial::Sample>& moving, const spatial::ClosestPoint& fixed, const Pose& start,
               const IcpOptions& options, const std::function<void()>& poll);
 
-}  // namespace parts
+}  // namespace parts::align

@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::align {
 
 /// Where the moving surface stands in the fixed one's frame: x -> scale * rotation * x + translation.
 /// A mirrored pose takes the moving surface reflected in x first.
@@ -24,4 +24,4 @@ inline double angle_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) 
   return std::acos(std::clamp(((a.transpose() * b).trace() - 1) / 2, -1.0, 1.0));
 }
 
-}  // namespace parts
+}  // namespace parts::align

@@ -12,13 +12,13 @@
 #include "parts/base/median.h"
 #include "parts/render/mask.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 /// Mean squared difference of two reliefs; where one
 /// has no foreground, as large as the larger relief.
-double relief_difference(const PatchImage& a, const PatchImage& b, bool centered) {
-  const cv::Point2d shift = centered ? centroid(a.mask) - centroid(b.mask) : cv::Point2d();
+double relief_difference(const synthesis::PatchImage& a, const synthesis::PatchImage& b, bool centered) {
+  const cv::Point2d shift = centered ? render::centroid(a.mask) - render::centroid(b.mask) : cv::Point2d();
   const cv::Matx23d move(1, 0, shift.x, 0, 1, shift.y);
   cv::Mat moved, mask;
   cv::warpAffine(b.planes[kReliefPlane], moved, move, a.mask.size(), cv::INTER_LINEAR);
@@ -44,14 +44,14 @@ cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit
   return d;
 }
 
-double relief_spread(const PatchImage& image) {
+double relief_spread(const synthesis::PatchImage& image) {
   cv::Scalar mean, spread;
   cv::meanStdDev(image.planes[kReliefPlane], mean, spread, image.mask);
   return spread[0];
 }
 
-PatchImage color_planes(const Example& e) {
-  PatchImage p;
+synthesis::PatchImage color_planes(const examples::Example& e) {
+  synthesis::PatchImage p;
   p.mask = e.mask;
   p.planes.push_back(relief(e.depth, e.mask, e.pixels_per_unit()));
   cv::Mat ycc;
@@ -87,8 +87,9 @@ namespace {
 
 /// What each pixel of an image would have to be changed by to be as the pixel
 /// at the same place of another; one list a colour plane.
-std::array<std::vector<double>, 3> steps_between(const PatchImage& image, const PatchImage& like, bool centered) {
-  const cv::Point2d shift = centered ? centroid(like.mask) - centroid(image.mask) : cv::Point2d();
+std::array<std::vector<double>, 3> steps_between(const synthesis::PatchImage& image, const synthesis::PatchImage& like,
+                                                 bool centered) {
+  const cv::Point2d shift = centered ? render::centroid(like.mask) - render::centroid(image.mask) : cv::Point2d();
   const cv::Rect frame({0, 0}, like.mask.size());
   std::array<std::vector<double>, 3> steps;
   for (int y = 0; y < image.mask.rows; ++y)
@@ -118,14 +119,14 @@ cv::Vec3d tint(const std::array<std::vector<double>, 3>& steps) {
 
 }  // namespace
 
-bool harmonize(PatchImage& image, const PatchImage& like, bool centered) {
+bool harmonize(synthesis::PatchImage& image, const synthesis::PatchImage& like, bool centered) {
   const cv::Vec3d step = tint(steps_between(image, like, centered));
   for (int k = 0; k < 3; ++k)
     if (step[k] != 0) image.planes[kYPlane + k] += step[k];
   return step != cv::Vec3d();
 }
 
-double discord(const PatchImage& image, const PatchImage& like, const ColorizeOptions& options) {
+double discord(const synthesis::PatchImage& image, const synthesis::PatchImage& like, const ColorizeOptions& options) {
   constexpr double kOther = 0.1;  // of Y or Cb or Cr: as skin differs from hair or a shirt
   const auto steps = steps_between(image, like, options.centered);
   const cv::Vec3d taken = options.harmonize ? tint(steps) : cv::Vec3d();
@@ -139,8 +140,8 @@ double discord(const PatchImage& image, const PatchImage& like, const ColorizeOp
   return double(other) / double(steps[0].size());
 }
 
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const PatchImage& kept,
-                     const ColorizeOptions& options, ColorizeReport& report) {
+void select_examples(std::vector<ColorExample>& all, const synthesis::PatchImage& query,
+                     const synthesis::PatchImage& kept, const ColorizeOptions& options, ColorizeReport& report) {
   if (options.examples < 1) throw UserError("Examples must be 1 or more; 1 morphs one image-map onto the shape.");
   constexpr double kPatchwork = 0.3;     // discord beyond which one would see where colours come from
   constexpr double kDiscord = 0.2;       // counts as much as the median difference in shape; less hardly matters
@@ -176,8 +177,8 @@ void select_examples(std::vector<ColorExample>& all, const PatchImage& query, co
   all = std::move(chosen);
 }
 
-SynthesisOptions color_synthesis(const ColorizeOptions& options) {
-  SynthesisOptions s;
+synthesis::SynthesisOptions color_synthesis(const ColorizeOptions& options) {
+  synthesis::SynthesisOptions s;
   s.channels = {{kReliefPlane, options.weight_depth, false, true},
                 {kReliefPlane, options.weight_detail, true, false},
                 {kYPlane, options.weight_y, false, false},
@@ -202,9 +203,9 @@ cv::Mat to_color(const std::vector<cv::Mat>& ycbcr) {
   return color;
 }
 
-std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
-                                         ColorizeReport& report) {
-  std::vector<PatchImage> images;
+std::vector<synthesis::PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
+                                                    ColorizeReport& report) {
+  std::vector<synthesis::PatchImage> images;
   for (ColorExample& e : examples) {
     report.used.push_back(e.name);
     if (options.harmonize && !images.empty() && harmonize(e.image, images.front(), options.centered))
@@ -214,7 +215,7 @@ std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, con
   return images;
 }
 
-void report_synthesis(const SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report) {
+void report_synthesis(const synthesis::SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report) {
   report.objective = found.objective;
   const cv::Mat squared = found.distance.mul(found.distance);
   report.patch_distance = std::sqrt(cv::mean(squared, mask)[0]);
@@ -223,4 +224,4 @@ void report_synthesis(const SynthesisResult& found, const cv::Mat& mask, Coloriz
     report.shares.push_back(cv::countNonZero(found.example == int(k)) / foreground);
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

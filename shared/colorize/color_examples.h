@@ -10,12 +10,12 @@
 
 /// What the colouring of depth maps and of meshes have in common: which objects
 /// give their colours, as which planes, and how these are weighed.
-namespace parts {
+namespace parts::colorize {
 
 struct ColorizeOptions {
   int examples = 2;                        ///< objects whose colours are used; 1 morphs one image-map onto the shape
   std::vector<std::string> choose;         ///< their labels; empty: those whose depth is most like the query's
-  View view;                               ///< from which the depth was seen, of examples that have several
+  render::View view;                       ///< from which the depth was seen, of examples that have several
   std::vector<int> patch_sizes{9, 11, 7};  ///< windows' sides in pixels, odd, coarse to fine: one a pyramid level
   double weight_depth = 3;                 ///< weights: 1 = a difference of one standard deviation counts 1
   double weight_detail = 3;                ///< of the depth's high frequencies
@@ -47,15 +47,15 @@ enum ColorPlane { kReliefPlane, kYPlane, kCbPlane, kCrPlane };
 struct ColorExample {
   int object = 0;
   std::string name;
-  double difference = 0;  ///< of its relief to the query's, squared pixels
-  PatchImage image;       ///< as ColorPlane says
+  double difference = 0;        ///< of its relief to the query's, squared pixels
+  synthesis::PatchImage image;  ///< as ColorPlane says
 };
 
-PatchImage color_planes(const Example& example);
+synthesis::PatchImage color_planes(const examples::Example& example);
 /// @param depth  32F, NaN = background, which becomes 0
 cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit);
 /// The relief's standard deviation over the foreground.
-double relief_spread(const PatchImage& image);
+double relief_spread(const synthesis::PatchImage& image);
 
 /// The objects that may give colours, by their numbers: all, or those named.
 /// @param name  of each object; labels may leave the file's ending out
@@ -65,12 +65,12 @@ std::vector<int> choosable(const std::vector<std::string>& names, const std::vec
 /// Takes off an example what makes it differ from another all over: exposure or
 /// tint. What differs here and there (a red coat and a blue one) is no tint.
 /// @return whether there was such a difference
-bool harmonize(PatchImage& image, const PatchImage& like, bool centered);
+bool harmonize(synthesis::PatchImage& image, const synthesis::PatchImage& like, bool centered);
 
 /// The share of the surface where two examples have other colours: put together
 /// they would give patchwork. With options.harmonize after taking off what
 /// differs all over.
-double discord(const PatchImage& image, const PatchImage& like, const ColorizeOptions& options);
+double discord(const synthesis::PatchImage& image, const synthesis::PatchImage& like, const ColorizeOptions& options);
 
 /// Sorts by similarity of shape and keeps options.examples of them: the most
 /// similar one, and others that go with its colours; fewer where too few do,
@@ -79,20 +79,20 @@ double discord(const PatchImage& image, const PatchImage& like, const ColorizeOp
 /// @param kept  colours of the query that stay, with which the examples' are to
 ///              go; an empty mask: none
 /// @throws UserError  options.examples is below 1
-void select_examples(std::vector<ColorExample>& all, const PatchImage& query, const PatchImage& kept,
-                     const ColorizeOptions& options, ColorizeReport& report);
+void select_examples(std::vector<ColorExample>& all, const synthesis::PatchImage& query,
+                     const synthesis::PatchImage& kept, const ColorizeOptions& options, ColorizeReport& report);
 
 /// The engine's channels and weights.
-SynthesisOptions color_synthesis(const ColorizeOptions& options);
+synthesis::SynthesisOptions color_synthesis(const ColorizeOptions& options);
 
 /// BGR, 8 bits, from Y, Cb and Cr as 32F.
 cv::Mat to_color(const std::vector<cv::Mat>& ycbcr);
 
 /// The examples' images, harmonised with the first one's. Fills used and harmonized.
-std::vector<PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
-                                         ColorizeReport& report);
+std::vector<synthesis::PatchImage> prepare_examples(std::vector<ColorExample> examples, const ColorizeOptions& options,
+                                                    ColorizeReport& report);
 
 /// Fills shares, objective and patch_distance.
-void report_synthesis(const SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report);
+void report_synthesis(const synthesis::SynthesisResult& found, const cv::Mat& mask, ColorizeReport& report);
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -11,7 +11,7 @@
 #include "parts/render/mask.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 double reach(const cv::Mat& mask) { return std::sqrt(double(cv::countNonZero(mask))); }
@@ -26,7 +26,7 @@ struct Frame {
 /// centroid, as large as they are.
 Frame fit(const cv::Mat& mask, cv::Size frame, double typical_reach, const cv::Point2d& typical_center) {
   const double scale = typical_reach / reach(mask);
-  const cv::Point2d center = centroid(mask);
+  const cv::Point2d center = render::centroid(mask);
   Frame f;
   f.moved =
       mask.size() != frame || scale > 1.25 || scale < 0.8 || cv::norm(center - typical_center) > 0.1 * typical_reach;
@@ -59,7 +59,7 @@ void check_foreground(const cv::Mat& mask) {
     throw UserError("The depth map has next to no foreground; 0, NaN and infinity are background.");
 }
 
-std::vector<ColorExample> load(ExampleSource& source, const ColorizeOptions& options, Progress& progress) {
+std::vector<ColorExample> load(examples::ExampleSource& source, const ColorizeOptions& options, Progress& progress) {
   std::vector<std::string> names;
   for (int object = 0; object < source.size(); ++object) names.push_back(source.name(object));
   std::vector<ColorExample> all;
@@ -79,7 +79,7 @@ struct Typical {
 Typical typical(const std::vector<ColorExample>& examples) {
   std::vector<double> reaches, reliefs, xs, ys;
   for (const ColorExample& c : examples) {
-    const cv::Point2d center = centroid(c.image.mask);
+    const cv::Point2d center = render::centroid(c.image.mask);
     reaches.push_back(reach(c.image.mask)), xs.push_back(center.x), ys.push_back(center.y);
     reliefs.push_back(relief_spread(c.image) / reaches.back());
   }
@@ -87,11 +87,12 @@ Typical typical(const std::vector<ColorExample>& examples) {
 }
 
 /// The depth in the examples' frame, its relief as strong as theirs.
-PatchImage query_of(const cv::Mat& depth, const cv::Mat& mask, const Frame& frame, cv::Size size, double strength) {
-  PatchImage query;
+synthesis::PatchImage query_of(const cv::Mat& depth, const cv::Mat& mask, const Frame& frame, cv::Size size,
+                               double strength) {
+  synthesis::PatchImage query;
   query.planes.resize(4);
   query.mask = mask.clone();  // result.mask stays as it is
-  cv::Mat full = extend(relief(depth, mask, 1), mask);
+  cv::Mat full = synthesis::extend(relief(depth, mask, 1), mask);
   if (frame.moved) {
     cv::warpAffine(full, full, frame.matrix, size, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
     cv::warpAffine(mask, query.mask, frame.matrix, size, cv::INTER_LINEAR);
@@ -113,7 +114,7 @@ void bring_back(const Frame& frame, const cv::Mat& mask, std::vector<cv::Mat>& p
     cv::warpAffine(from, to, frame.matrix, size, interpolation | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
     return to;
   };
-  for (cv::Mat& plane : planes) plane = back(extend(plane, mask), cv::INTER_CUBIC);
+  for (cv::Mat& plane : planes) plane = back(synthesis::extend(plane, mask), cv::INTER_CUBIC);
   cv::Mat index, pixel;
   result.example.convertTo(index, CV_32F);
   result.source.convertTo(pixel, CV_32F);
@@ -125,22 +126,22 @@ void bring_back(const Frame& frame, const cv::Mat& mask, std::vector<cv::Mat>& p
 
 }  // namespace
 
-ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const ColorizeOptions& options,
+ColorizeResult colorize_depth(const cv::Mat& depth, examples::ExampleSource& source, const ColorizeOptions& options,
                               Progress& progress) {
   ColorizeResult result;
-  result.mask = depth_mask(depth);
+  result.mask = io::depth_mask(depth);
   check_foreground(result.mask);
   progress.stage("Reading examples", 0, 20);
   std::vector<ColorExample> examples = load(source, options, progress);
   const Typical like = typical(examples);
   const Frame frame = fit(result.mask, source.image_size(), like.reach, like.center);
   result.aligned = frame.moved;
-  const PatchImage query = query_of(depth, result.mask, frame, source.image_size(), like.relief);
+  const synthesis::PatchImage query = query_of(depth, result.mask, frame, source.image_size(), like.relief);
   select_examples(examples, query, {}, options, result);
-  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options, result);
+  const std::vector<synthesis::PatchImage> images = prepare_examples(std::move(examples), options, result);
 
   Progress rest = progress.part(20, 100);
-  const SynthesisResult found = synthesize(query, images, color_synthesis(options), {}, rest);
+  const synthesis::SynthesisResult found = synthesis::synthesize(query, images, color_synthesis(options), {}, rest);
   report_synthesis(found, query.mask, result);
   result.example = found.example, result.source = found.source;
   std::vector<cv::Mat> planes = found.planes;
@@ -151,4 +152,4 @@ ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

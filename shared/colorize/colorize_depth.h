@@ -4,7 +4,7 @@
 #include "parts/base/progress.h"
 #include "parts/colorize/color_examples.h"
 
-namespace parts {
+namespace parts::colorize {
 
 struct ColorizeResult : ColorizeReport {
   cv::Mat color;    ///< 8UC3, BGR; black in the background
@@ -18,7 +18,7 @@ struct ColorizeResult : ColorizeReport {
 /// found. Depths are compared by their shape: mean and range do not matter.
 /// @param depth  32F, NaN = background, growing away from the camera, any unit
 /// @throws UserError  a depth without foreground, a label that no example has, …
-ColorizeResult colorize_depth(const cv::Mat& depth, ExampleSource& source, const ColorizeOptions& options,
+ColorizeResult colorize_depth(const cv::Mat& depth, examples::ExampleSource& source, const ColorizeOptions& options,
                               Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -12,7 +12,7 @@
 #include "parts/render/surface_color.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 constexpr int kComparison = 96;  // pixels of views by which models are compared
@@ -20,40 +20,40 @@ constexpr int kSearched = 256;   // of the finest level at which patches are sea
 constexpr int kCoarsest = 64;    // of the coarsest level, at most
 
 /// Side by side; all of one height.
-PatchImage beside(const std::vector<PatchImage>& images) {
-  PatchImage all;
+synthesis::PatchImage beside(const std::vector<synthesis::PatchImage>& images) {
+  synthesis::PatchImage all;
   const auto join = [&](const auto& part, cv::Mat& to) {
     std::vector<cv::Mat> row;
-    for (const PatchImage& i : images) row.push_back(part(i));
+    for (const synthesis::PatchImage& i : images) row.push_back(part(i));
     cv::hconcat(row, to);
   };
-  join([](const PatchImage& i) { return i.mask; }, all.mask);
+  join([](const synthesis::PatchImage& i) { return i.mask; }, all.mask);
   all.planes.resize(images.front().planes.size());
   for (std::size_t p = 0; p < all.planes.size(); ++p)
-    join([p](const PatchImage& i) { return i.planes[p]; }, all.planes[p]);
+    join([p](const synthesis::PatchImage& i) { return i.planes[p]; }, all.planes[p]);
   return all;
 }
 
-std::vector<Example> see(const ClassModel& model, double frame, const ColorizeMeshOptions& options,
-                         const ExampleOptions& rendering) {
-  std::vector<Example> all;
-  for (const View& view : options.views) all.push_back(render_example(model, view, frame, rendering));
+std::vector<examples::Example> see(const examples::ClassModel& model, double frame, const ColorizeMeshOptions& options,
+                                   const examples::ExampleOptions& rendering) {
+  std::vector<examples::Example> all;
+  for (const render::View& view : options.views) all.push_back(examples::render_example(model, view, frame, rendering));
   return all;
 }
 
-std::vector<PatchImage> planes_of(const std::vector<Example>& views) {
-  std::vector<PatchImage> all;
-  for (const Example& view : views) all.push_back(color_planes(view));
+std::vector<synthesis::PatchImage> planes_of(const std::vector<examples::Example>& views) {
+  std::vector<synthesis::PatchImage> all;
+  for (const examples::Example& view : views) all.push_back(color_planes(view));
   return all;
 }
 
 /// As large as in the class and standing like it, its middle in the origin: in
 /// the frame of the views.
-ClassModel pose(const Mesh& mesh, const ClassModels& models, const ColorizeMeshOptions& options) {
-  ClassModel query;
+examples::ClassModel pose(const Mesh& mesh, const examples::ClassModels& models, const ColorizeMeshOptions& options) {
+  examples::ClassModel query;
   query.mesh = mesh;
   query.mesh.vertex_normal.clear();
-  if (!options.keep.empty()) query.textures = load_textures(mesh);
+  if (!options.keep.empty()) query.textures = render::load_textures(mesh);
   for (const Triangle& f : mesh.faces)
     for (int v : f)
       if (!mesh.vertices[v].allFinite())
@@ -61,15 +61,15 @@ ClassModel pose(const Mesh& mesh, const ClassModels& models, const ColorizeMeshO
   const Box box = mesh.bounds();
   if (!(box.diagonal().norm() > 0)) throw UserError("All of the mesh lies in one point; choose a surface.");
   const double size = models.shown_size(box.diagonal().norm());
-  const ExampleOptions& r = options.rendering;
+  const examples::ExampleOptions& r = options.rendering;
   const Eigen::Matrix3d turn =
-      view_rotation({}, r.up, r.front).transpose() * view_rotation({}, options.up, options.front);
+      render::view_rotation({}, r.up, r.front).transpose() * render::view_rotation({}, options.up, options.front);
   for (Vec3& v : query.mesh.vertices) v = turn * (v - box.center()) / size;
   return query;
 }
 
 /// A model's vertices in the frame of the views.
-Mesh in_frame(const ClassModel& model) {
+Mesh in_frame(const examples::ClassModel& model) {
   Mesh mesh;
   mesh.faces = model.mesh.faces;
   for (const Vec3& v : model.mesh.vertices) mesh.vertices.push_back((v - model.center) / model.size);
@@ -77,11 +77,11 @@ Mesh in_frame(const ClassModel& model) {
 }
 
 /// Moves the query onto a model where they are nearly aligned already.
-bool align(ClassModel& query, const ClassModel& model, int threads, Progress& progress) {
+bool align(examples::ClassModel& query, const examples::ClassModel& model, int threads, Progress& progress) {
   constexpr double kMostTurned = 20 * EIGEN_PI / 180, kMostScaled = 1.5, kGain = 0.9;
-  AlignOptions options;
+  align::AlignOptions options;
   options.coarse = false, options.allow_scale = true, options.overlap = 0.75, options.threads = threads;
-  const AlignResult found = align_part_in_whole(query.mesh, {}, in_frame(model), {}, options, progress);
+  const align::AlignResult found = align::align_part_in_whole(query.mesh, {}, in_frame(model), {}, options, progress);
   const Eigen::Matrix3d linear = found.matrix.topLeftCorner<3, 3>();
   const double scale = std::cbrt(std::abs(linear.determinant()));
   const double turned = Eigen::AngleAxisd(Eigen::Matrix3d(linear / scale)).angle();
@@ -93,26 +93,29 @@ bool align(ClassModel& query, const ClassModel& model, int threads, Progress& pr
 }
 
 /// Pixels a unit of the frame: that of the class, less if the query needs more room.
-double frame_for(const ClassModel& query, const ClassModels& models, const ColorizeMeshOptions& options) {
-  const ExampleOptions& r = options.rendering;
+double frame_for(const examples::ClassModel& query, const examples::ClassModels& models,
+                 const ColorizeMeshOptions& options) {
+  const examples::ExampleOptions& r = options.rendering;
   double frame = models.frame();
-  for (const View& view : options.views) {
-    const Eigen::Vector2d reach = extent(query.mesh, query.center, view_rotation(view, r.up, r.front));
+  for (const render::View& view : options.views) {
+    const Eigen::Vector2d reach =
+        examples::extent(query.mesh, query.center, render::view_rotation(view, r.up, r.front));
     frame = std::min(frame, 0.48 * std::min(r.width / std::max(reach.x(), 1e-9), r.height / std::max(reach.y(), 1e-9)));
   }
   return frame;
 }
 
 /// Compares the query with every model by small views, and keeps those that give their colours.
-std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, const ColorizeMeshOptions& options,
-                                 double frame, ColorizeReport& report, Progress& progress) {
-  ExampleOptions small = options.rendering;
+std::vector<ColorExample> choose(const examples::ClassModel& query, examples::ClassModels& models,
+                                 const ColorizeMeshOptions& options, double frame, ColorizeReport& report,
+                                 Progress& progress) {
+  examples::ExampleOptions small = options.rendering;
   const double shrink = std::min(1.0, double(kComparison) / std::max(small.width, small.height));
   small.width = std::max(8, int(small.width * shrink)), small.height = std::max(8, int(small.height * shrink));
-  const std::vector<Example> views = see(query, frame * shrink, options, small);
-  std::vector<PatchImage> tiles = planes_of(views);
-  const PatchImage seen = beside(tiles);
-  PatchImage kept;
+  const std::vector<examples::Example> views = see(query, frame * shrink, options, small);
+  std::vector<synthesis::PatchImage> tiles = planes_of(views);
+  const synthesis::PatchImage seen = beside(tiles);
+  synthesis::PatchImage kept;
   if (!options.keep.empty()) {
     const std::vector<cv::Mat> masks = kept_pixels(query, options.keep, views);
     for (std::size_t v = 0; v < tiles.size(); ++v) tiles[v].mask = masks[v];
@@ -124,8 +127,8 @@ std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, c
   std::vector<ColorExample> all;
   for (int i : choosable(names, options.choose)) {
     progress.at(double(i) / models.size());
-    const ClassModel& model = models.get(i);
-    if (!has_colors(model.mesh, model.textures)) {
+    const examples::ClassModel& model = models.get(i);
+    if (!render::has_colors(model.mesh, model.textures)) {
       progress.log("without_colours: " + model.name);
       continue;
     }
@@ -138,7 +141,7 @@ std::vector<ColorExample> choose(const ClassModel& query, ClassModels& models, c
 }
 
 /// What of each view holds the query or an example.
-std::vector<cv::Rect> used_parts(const std::vector<std::vector<PatchImage>>& objects) {
+std::vector<cv::Rect> used_parts(const std::vector<std::vector<synthesis::PatchImage>>& objects) {
   std::vector<cv::Rect> parts;
   for (std::size_t v = 0; v < objects.front().size(); ++v) {
     cv::Mat any = objects.front()[v].mask.clone();
@@ -151,8 +154,8 @@ std::vector<cv::Rect> used_parts(const std::vector<std::vector<PatchImage>>& obj
 }
 
 /// Levels to search, those above them that only carry matches on.
-SynthesisOptions synthesis_for(const ColorizeMeshOptions& options, int longest, double foreground) {
-  SynthesisOptions s = color_synthesis(options);
+synthesis::SynthesisOptions synthesis_for(const ColorizeMeshOptions& options, int longest, double foreground) {
+  synthesis::SynthesisOptions s = color_synthesis(options);
   s.size = std::sqrt(foreground);
   s.longest_coarsest = 0;
   if (s.patch_sizes.empty()) return s;  // the engine says so
@@ -175,19 +178,19 @@ void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
 }
 
 /// Whether nearly all that is seen are front faces.
-bool faces_outwards(const ClassModel& query, double frame, const ColorizeMeshOptions& options) {
+bool faces_outwards(const examples::ClassModel& query, double frame, const ColorizeMeshOptions& options) {
   long front = 0, all = 0;
-  ExampleOptions small = options.rendering;
-  for (const View& view : options.views) {
-    Camera camera;
-    camera.rotation = view_rotation(view, small.up, small.front);
+  examples::ExampleOptions small = options.rendering;
+  for (const render::View& view : options.views) {
+    render::Camera camera;
+    camera.rotation = render::view_rotation(view, small.up, small.front);
     camera.width = camera.height = kComparison;
     camera.center = {kComparison / 2., kComparison / 2.};
     camera.scale = frame * kComparison / std::max(small.width, small.height);
     camera.eye = camera.rotation.row(2).transpose();
-    RenderOptions look;
+    render::RenderOptions look;
     look.threads = options.threads;
-    const cv::Mat face = render(query.mesh, {}, camera, look).face;
+    const cv::Mat face = render::render(query.mesh, {}, camera, look).face;
     for (int y = 0; y < face.rows; ++y)
       for (int x = 0; x < face.cols; ++x)
         if (const int f = face.at<int>(y, x); f >= 0) {
@@ -201,13 +204,14 @@ bool faces_outwards(const ClassModel& query, double frame, const ColorizeMeshOpt
 
 }  // namespace
 
-MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMeshOptions& given, Progress& progress) {
+MeshColors colorize_mesh(const Mesh& mesh, examples::ClassModels& models, const ColorizeMeshOptions& given,
+                         Progress& progress) {
   ColorizeMeshOptions options = given;
   options.centered = false;
   if (mesh.faces.empty()) throw UserError("The mesh has no faces; choose a layer that holds a surface.");
   if (options.views.empty()) throw UserError("No view is given; give yaw,pitch in degrees, as in 0,0; 90,0; 180,0.");
   MeshColors result;
-  ClassModel query = pose(mesh, models, options);
+  examples::ClassModel query = pose(mesh, models, options);
   double frame = frame_for(query, models, options);
   progress.stage("Comparing with the models", 0, 20);
   std::vector<ColorExample> examples = choose(query, models, options, frame, result, progress);
@@ -220,31 +224,31 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
       examples = choose(query, models, options, frame, result, progress);
     }
   }
-  const std::vector<Example> seen = see(query, frame, options, options.rendering);
-  std::vector<std::vector<PatchImage>> planes{planes_of(seen)};
+  const std::vector<examples::Example> seen = see(query, frame, options, options.rendering);
+  std::vector<std::vector<synthesis::PatchImage>> planes{planes_of(seen)};
   for (ColorExample& e : examples)
     planes.push_back(planes_of(see(models.get(e.object), frame, options, options.rendering)));
   const std::vector<cv::Rect> parts = used_parts(planes);
   check_memory(parts, planes.size());
 
   double foreground = 0;
-  for (const PatchImage& image : planes[0]) foreground += cv::countNonZero(image.mask);
-  const SynthesisOptions engine = synthesis_for(options, std::max(options.rendering.width, options.rendering.height),
-                                                foreground / double(seen.size()));
+  for (const synthesis::PatchImage& image : planes[0]) foreground += cv::countNonZero(image.mask);
+  const synthesis::SynthesisOptions engine = synthesis_for(
+      options, std::max(options.rendering.width, options.rendering.height), foreground / double(seen.size()));
   const int gap = engine.patch_sizes.empty() ? 1 : engine.patch_sizes.front() / 2 + 1;
   result.sheet = ViewSheet(seen, parts, std::max(1, int(engine.patch_sizes.size())), gap, options.threads);
-  PatchImage sheet = result.sheet.assemble(planes[0]);
+  synthesis::PatchImage sheet = result.sheet.assemble(planes[0]);
   for (int k : engine.synthesized) sheet.planes[k].release();
   for (std::size_t k = 0; k < examples.size(); ++k) examples[k].image = result.sheet.assemble(planes[k + 1]);
   planes.clear();
   const int like = examples.front().object;
-  const std::vector<PatchImage> images = prepare_examples(std::move(examples), options, result);
+  const std::vector<synthesis::PatchImage> images = prepare_examples(std::move(examples), options, result);
 
   Progress synthesis = progress.part(30, 90);
-  const SynthesisResult found = synthesize(sheet, images, engine, {}, synthesis,
-                                           [&](int level, std::vector<cv::Mat>& p) { result.sheet.agree(level, p); });
+  const synthesis::SynthesisResult found = synthesis::synthesize(
+      sheet, images, engine, {}, synthesis, [&](int level, std::vector<cv::Mat>& p) { result.sheet.agree(level, p); });
   report_synthesis(found, sheet.mask, result);
-  for (const cv::Mat& plane : found.planes) result.planes.push_back(extend(plane, sheet.mask));
+  for (const cv::Mat& plane : found.planes) result.planes.push_back(synthesis::extend(plane, sheet.mask));
   result.example = found.example;
   result.oriented = faces_outwards(query, frame, options);
   progress.stage("Colouring the surface", 90, 100);
@@ -253,4 +257,4 @@ MeshColors colorize_mesh(const Mesh& mesh, ClassModels& models, const ColorizeMe
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -10,26 +10,26 @@
 #include "parts/render/surface_color.h"
 #include "parts/spatial/closest_face.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 using Vec3f = Eigen::Vector3f;
 
 /// The model's colours where it is closest to the vertices of faces.
-std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used, const ClassModel& model,
+std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used, const examples::ClassModel& model,
                                 int threads) {
   constexpr double kFinest = 1e12;
-  const ClosestFace closest(model.mesh);
+  const spatial::ClosestFace closest(model.mesh);
   std::vector<Vec3f> color(posed.vertices.size(), Vec3f(0.5f, 128 / 255.f, 128 / 255.f));
   if (closest.empty()) return color;
   parallel_for(posed.vertex_count(), threads, [&](long begin, long end) {
     int hint = 0;
     for (long v = begin; v < end; ++v) {
       if (!used[v] || !posed.vertices[v].allFinite()) continue;
-      const FaceHit hit = closest(posed.vertices[v], hint);
+      const spatial::FaceHit hit = closest(posed.vertices[v], hint);
       if (hit.face < 0) continue;
-      color[v] = to_ycbcr(surface_color(model.mesh, model.textures, hit.face, hit.barycentric.cast<float>(), kFinest,
-                                        {200, 200, 200, 255}));
+      color[v] = to_ycbcr(render::surface_color(model.mesh, model.textures, hit.face, hit.barycentric.cast<float>(),
+                                                kFinest, {200, 200, 200, 255}));
     }
   });
   return color;
@@ -38,8 +38,8 @@ std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used
 /// Continues values from the known vertices over the others along edges;
 /// vertices that no known one is joined to get a share of 0.
 void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std::vector<Vec3f>& value) {
-  constexpr double kPull = 1e-3;                             // towards 0, so that a solution exists everywhere
-  const std::vector<int> place = first_at_same_place(mesh);  // corners of their own are one place
+  constexpr double kPull = 1e-3;                                   // towards 0, so that a solution exists everywhere
+  const std::vector<int> place = mesh::first_at_same_place(mesh);  // corners of their own are one place
   std::vector<int> row(mesh.vertices.size(), -1);
   int rows = 0;
   for (const Triangle& f : mesh.faces)
@@ -79,7 +79,7 @@ Vec3f to_ycbcr(const Vec3f& bgr) {
   return {y, (bgr[0] / 255 - y) * 0.564f + 128 / 255.f, (bgr[2] / 255 - y) * 0.713f + 128 / 255.f};
 }
 
-void complete_colors(const Mesh& posed, const std::vector<char>& known, const ClassModel& model,
+void complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
                      std::vector<Eigen::Vector3f>& color, int threads) {
   std::vector<char> used(posed.vertices.size(), 0);  // hidden ones and their neighbours
   for (const Triangle& f : posed.faces)
@@ -94,4 +94,4 @@ void complete_colors(const Mesh& posed, const std::vector<char>& known, const Cl
     if (!known[v]) color[v] = (of_model[v] + difference[v]).cwiseMax(0).cwiseMin(1);
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -3,7 +3,7 @@
 
 #include "parts/examples/class_models.h"
 
-namespace parts {
+namespace parts::colorize {
 
 /// Y, Cb and Cr, 0..1, of B, G and R, 0..255.
 Eigen::Vector3f to_ycbcr(const Eigen::Vector3f& bgr);
@@ -14,7 +14,7 @@ Eigen::Vector3f to_ycbcr(const Eigen::Vector3f& bgr);
 /// @param posed   the mesh, its vertices in the model's world space
 /// @param known   per vertex
 /// @param color   Y, Cb and Cr of each vertex, 0..1; those not known are found
-void complete_colors(const Mesh& posed, const std::vector<char>& known, const ClassModel& model,
+void complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
                      std::vector<Eigen::Vector3f>& color, int threads);
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -5,15 +5,15 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::colorize {
 
-std::vector<cv::Mat> kept_pixels(const ClassModel& mesh, const std::vector<char>& kept_faces,
-                                 const std::vector<Example>& views) {
+std::vector<cv::Mat> kept_pixels(const examples::ClassModel& mesh, const std::vector<char>& kept_faces,
+                                 const std::vector<examples::Example>& views) {
   std::vector<cv::Mat> all;
-  for (const Example& view : views) {
-    RenderOptions plain;
+  for (const examples::Example& view : views) {
+    render::RenderOptions plain;
     plain.colors = false;
-    const cv::Mat face = render(mesh.mesh, {}, view.camera, plain).face;
+    const cv::Mat face = render::render(mesh.mesh, {}, view.camera, plain).face;
     cv::Mat kept = cv::Mat::zeros(face.size(), CV_8U);
     for (int y = 0; y < face.rows; ++y)
       for (int x = 0; x < face.cols; ++x)
@@ -60,4 +60,4 @@ std::vector<Eigen::Vector3f> corrections(const std::vector<Vec3>& vertices, cons
   return all;
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

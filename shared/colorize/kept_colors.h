@@ -5,11 +5,11 @@
 
 #include "parts/examples/class_models.h"
 
-namespace parts {
+namespace parts::colorize {
 
 /// The pixels of views in which a mesh shows faces whose colours stay. @return 8U each
-std::vector<cv::Mat> kept_pixels(const ClassModel& mesh, const std::vector<char>& kept_faces,
-                                 const std::vector<Example>& views);
+std::vector<cv::Mat> kept_pixels(const examples::ClassModel& mesh, const std::vector<char>& kept_faces,
+                                 const std::vector<examples::Example>& views);
 
 /// What to add to the colours that were found for vertices so that they go with
 /// those that stay: what these differ by, where found colour and place are most
@@ -22,4 +22,4 @@ std::vector<Eigen::Vector3f> corrections(const std::vector<Vec3>& vertices, cons
                                          const std::vector<Eigen::Vector3f>& own, const std::vector<char>& kept,
                                          int threads);
 
-}  // namespace parts
+}  // namespace parts::colorize

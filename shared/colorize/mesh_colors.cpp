@@ -10,7 +10,7 @@
 #include "parts/mesh/attributes.h"
 #include "parts/render/surface_color.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 using Vec3f = Eigen::Vector3f;
@@ -22,12 +22,12 @@ constexpr float kClearlySeen = 0.1f;        // see ViewSheet::look(): below, hid
 std::vector<Vec3f> normals_of(const Mesh& mesh) {
   Mesh m;
   m.vertices = mesh.vertices, m.faces = mesh.faces;
-  update_normals(m);
+  mesh::update_normals(m);
   return m.vertex_normal;
 }
 
 /// Colours of the vertices: what views see, and completed by the model.
-void color_vertices(const Mesh& posed, const ClassModel& like, int threads, MeshColors& colors) {
+void color_vertices(const Mesh& posed, const examples::ClassModel& like, int threads, MeshColors& colors) {
   const std::vector<Vec3f> normals = colors.oriented ? normals_of(posed) : std::vector<Vec3f>();
   colors.vertex.assign(posed.vertices.size(), Vec3f(0.5f, 128 / 255.f, 128 / 255.f));
   std::vector<char> known(posed.vertices.size(), 0);
@@ -58,7 +58,7 @@ void match_kept(const Mesh& posed, int threads, MeshColors& colors) {
   for (int f = 0; f < posed.face_count(); ++f)
     for (int k = 0; k < 3 && colors.keep[f]; ++k) {
       const int v = posed.faces[f][k];
-      own[v] = to_ycbcr(surface_color(posed, colors.textures, f, Vec3f::Unit(k), kFinest, kNone));
+      own[v] = to_ycbcr(render::surface_color(posed, colors.textures, f, Vec3f::Unit(k), kFinest, kNone));
       kept[v] = 1;
     }
   colors.correction = corrections(posed.vertices, colors.vertex, own, kept, threads);
@@ -66,7 +66,8 @@ void match_kept(const Mesh& posed, int threads, MeshColors& colors) {
 
 }  // namespace
 
-void color_surface(const ClassModel& query, const ClassModel& like, int threads, MeshColors& colors) {
+void color_surface(const examples::ClassModel& query, const examples::ClassModel& like, int threads,
+                   MeshColors& colors) {
   color_vertices(query.mesh, like, threads, colors);
   if (!colors.keep.empty()) {
     colors.textures = query.textures;
@@ -76,7 +77,7 @@ void color_surface(const ClassModel& query, const ClassModel& like, int threads,
 }
 
 Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
-  if (!keep.empty() && keep[face]) return to_ycbcr(surface_color(mesh, textures, face, b, kFinest, kNone));
+  if (!keep.empty() && keep[face]) return to_ycbcr(render::surface_color(mesh, textures, face, b, kFinest, kNone));
   const Triangle& t = mesh.faces[face];
   const Vec3 p = double(b[0]) * posed[t[0]] + double(b[1]) * posed[t[1]] + double(b[2]) * posed[t[2]];
   const Vec3 n =
@@ -91,7 +92,7 @@ Vec3f MeshColors::at(const Mesh& mesh, int face, const Vec3f& b) const {
 
 BakedTexture bake_texture(const Mesh& mesh, const std::vector<Wedges>& wedges, int size, const MeshColors& colors,
                           int threads) {
-  const TexelMap map = map_texels(wedges, size);
+  const render::TexelMap map = render::map_texels(wedges, size);
   std::vector<cv::Mat> planes;
   for (int k = 0; k < 3; ++k) planes.push_back(cv::Mat::zeros(size, size, CV_32F));
   BakedTexture baked;
@@ -127,4 +128,4 @@ std::vector<Color> vertex_colors(const MeshColors& colors) {
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -6,7 +6,7 @@
 #include "parts/examples/class_models.h"
 #include "parts/render/atlas.h"
 
-namespace parts {
+namespace parts::colorize {
 
 /// A mesh with colours all over its surface.
 struct MeshColors : ColorizeReport {
@@ -20,7 +20,7 @@ struct MeshColors : ColorizeReport {
 
   std::vector<Eigen::Vector3f> correction;  ///< per vertex, added to what was found; empty: none
   std::vector<char> keep;                   ///< faces whose colours are their own
-  Textures textures;                        ///< of the mesh, for these
+  render::Textures textures;                ///< of the mesh, for these
 
   /// Y, Cb and Cr at a point of a face.
   Eigen::Vector3f at(const Mesh& mesh, int face, const Eigen::Vector3f& barycentric) const;
@@ -31,7 +31,8 @@ struct MeshColors : ColorizeReport {
 /// correction and textures.
 /// @param query  the mesh in the frame of the views
 /// @param like   the model whose colours hidden parts take
-void color_surface(const ClassModel& query, const ClassModel& like, int threads, MeshColors& colors);
+void color_surface(const examples::ClassModel& query, const examples::ClassModel& like, int threads,
+                   MeshColors& colors);
 
 /// The texture of a mesh with these texture coordinates, BGR, and which texels it needs.
 struct BakedTexture {
@@ -42,4 +43,4 @@ BakedTexture bake_texture(const Mesh& mesh, const std::vector<Wedges>& wedges, i
                           int threads);
 std::vector<Color> vertex_colors(const MeshColors& colors);
 
-}  // namespace parts
+}  // namespace parts::colorize

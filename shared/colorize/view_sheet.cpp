@@ -7,7 +7,7 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::colorize {
 namespace {
 
 constexpr float kFeather = 4;       // pixels beside a silhouette or a jump that are trusted less
@@ -17,7 +17,7 @@ constexpr double kSteepest = 4;     // a slope beyond which it grows no more
 /// Depth between neighbours beyond which they are not one surface.
 bool jump(float a, float b, double pixel) { return !(std::abs(a - b) < 4 * pixel); }
 
-cv::Mat normals(const Example& view) {
+cv::Mat normals(const examples::Example& view) {
   cv::Mat out(view.depth.size(), CV_32FC3, cv::Scalar::all(0));
   const double pixel = 1 / view.pixels_per_unit();
   const auto slope = [&](float before, float at, float after) {
@@ -39,7 +39,7 @@ cv::Mat normals(const Example& view) {
   return out;
 }
 
-cv::Mat trust(const Example& view) {
+cv::Mat trust(const examples::Example& view) {
   const double pixel = 1 / view.pixels_per_unit();
   cv::Mat smooth = view.mask.clone(), distance, out;
   for (int y = 0; y < smooth.rows; ++y)
@@ -71,8 +71,8 @@ float sample(const cv::Mat& plane, double x, double y, const cv::Rect& within) {
 
 }  // namespace
 
-ViewSheet::ViewSheet(const std::vector<Example>& views, const std::vector<cv::Rect>& parts, int levels, int gap,
-                     int threads)
+ViewSheet::ViewSheet(const std::vector<examples::Example>& views, const std::vector<cv::Rect>& parts, int levels,
+                     int gap, int threads)
     : threads_(threads) {
   const int step = 1 << (levels - 1);
   int x = 0, height = 0;
@@ -84,8 +84,8 @@ ViewSheet::ViewSheet(const std::vector<Example>& views, const std::vector<cv::Re
   size_ = {std::max(1, x - gap * step), height};
 }
 
-PatchImage ViewSheet::assemble(const std::vector<PatchImage>& images) const {
-  PatchImage sheet;
+synthesis::PatchImage ViewSheet::assemble(const std::vector<synthesis::PatchImage>& images) const {
+  synthesis::PatchImage sheet;
   sheet.mask = cv::Mat::zeros(size_, CV_8U);
   for (const cv::Mat& plane : images.front().planes)
     sheet.planes.push_back(plane.empty() ? cv::Mat() : cv::Mat(cv::Mat::zeros(size_, CV_32F)));
@@ -155,4 +155,4 @@ void ViewSheet::agree(int level, std::vector<cv::Mat>& planes) const {
   planes = std::move(agreed);
 }
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -7,7 +7,7 @@
 #include "parts/examples/example.h"
 #include "parts/synthesis/synthesis.h"
 
-namespace parts {
+namespace parts::colorize {
 
 /// Several views of one surface as tiles of one image, so that they are
 /// synthesised together; and where they show the same point. A tile holds a part
@@ -15,7 +15,7 @@ namespace parts {
 class ViewSheet {
  public:
   struct Tile {
-    Camera camera;
+    render::Camera camera;
     cv::Mat depth;    ///< 32F of the whole view, NaN = background
     cv::Mat normal;   ///< 32FC3 of the whole view: of the surface, world frame, towards the camera
     cv::Mat trust;    ///< 32F of the whole view, 0..1: falls towards silhouettes and depth jumps
@@ -28,13 +28,14 @@ class ViewSheet {
   /// @param parts   of their images, a rectangle each
   /// @param levels  of the pyramids that are made of the sheet
   /// @param gap     pixels of the coarsest level between tiles
-  ViewSheet(const std::vector<Example>& views, const std::vector<cv::Rect>& parts, int levels, int gap, int threads);
+  ViewSheet(const std::vector<examples::Example>& views, const std::vector<cv::Rect>& parts, int levels, int gap,
+            int threads);
 
   cv::Size size() const { return size_; }
   const std::vector<Tile>& tiles() const { return tiles_; }
 
   /// The sheet of the parts of whole images, one a view.
-  PatchImage assemble(const std::vector<PatchImage>& images) const;
+  synthesis::PatchImage assemble(const std::vector<synthesis::PatchImage>& images) const;
 
   /// What the views show of a point: the mean of all that see it, each by how
   /// directly it does.
@@ -53,4 +54,4 @@ class ViewSheet {
   int threads_ = 0;
 };
 
-}  // namespace parts
+}  // namespace parts::colorize

@@ -14,7 +14,7 @@
 #include "parts/seam/clip.h"
 #include "parts/seam/joined.h"
 
-namespace parts {
+namespace parts::compose {
 namespace {
 
 class Clock {
@@ -25,69 +25,70 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Transition make_transition(const Model& a, const Model& b, const Decision& d, Cut cut) {
-  if (cut == Cut::Thesis) return Transition::along_voxels(d.voxels, d.labels);
-  return Transition::smooth(d.voxels, d.labels, crossing_points(a.prepared.mesh, b.prepared.mesh, d.voxels, d.labels));
+cut::Transition make_transition(const cut::Model& a, const cut::Model& b, const cut::Decision& d, cut::Cut cut) {
+  if (cut == cut::Cut::Thesis) return cut::Transition::along_voxels(d.voxels, d.labels);
+  return cut::Transition::smooth(d.voxels, d.labels,
+                                 cut::crossing_points(a.prepared.mesh, b.prepared.mesh, d.voxels, d.labels));
 }
 
-Clipped clip_model(const Model& model, bool of_a, const Decision& d, const Transition& transition, Cut cut,
-                   int threads) {
+seam::Clipped clip_model(const cut::Model& model, bool of_a, const cut::Decision& d, const cut::Transition& transition,
+                         cut::Cut cut, int threads) {
   const Mesh& mesh = model.prepared.mesh;
-  const Grid& grid = d.voxels.grid;
+  const cut::Grid& grid = d.voxels.grid;
   std::vector<signed char> pinned(mesh.faces.size(), 0);
   for (std::size_t f = 0; f < pinned.size(); ++f)
     if (model.keep[f])
       pinned[f] = 1;
     else if (const int piece = model.piece[f]; piece >= 0)
-      pinned[f] = (d.labels.outer[piece] == VoxelLabels::kA) == of_a ? 1 : -1;
-  ClipField field;
+      pinned[f] = (d.labels.outer[piece] == cut::VoxelLabels::kA) == of_a ? 1 : -1;
+  seam::ClipField field;
   const double sign = of_a ? 1 : -1;
   field.value = [&transition, sign, of_a](const Vec3& p) { return sign * transition.value(p, of_a); };
   field.crosses = [&transition, &grid, of_a](const Mesh& m, int f) {
     bool near = false;
-    for_each_voxel(grid, m, f, [&](std::size_t v) { near |= transition.near(v, of_a); });
+    cut::for_each_voxel(grid, m, f, [&](std::size_t v) { near |= transition.near(v, of_a); });
     return near;
   };
   field.crumb = 1.5 * grid.size;
-  field.max_edge = grid.size * (cut == Cut::Thesis ? 0.5 : 1.0);
-  return clip(mesh, pinned, field, threads);
+  field.max_edge = grid.size * (cut == cut::Cut::Thesis ? 0.5 : 1.0);
+  return seam::clip(mesh, pinned, field, threads);
 }
 
 /// Everything at one resolution.
 struct Attempt {
-  Decision decision;
-  Clipped a, b;
-  Joined joined;
+  cut::Decision decision;
+  seam::Clipped a, b;
+  seam::Joined joined;
   ComposeReport report;
   double flaws = 0;  ///< world units: borders that face none, and a voxel for each pair of crossing faces
 };
 
-std::unique_ptr<Attempt> attempt(Model& a, Model& b, const Box& volume, int resolution, const ComposeOptions& options,
-                                 Progress& progress) {
+std::unique_ptr<Attempt> attempt(cut::Model& a, cut::Model& b, const Box& volume, int resolution,
+                                 const ComposeOptions& options, Progress& progress) {
   auto t = std::make_unique<Attempt>();
   progress.stage("Finding the minimal cut", 10, 50);
-  t->decision = decide(a, b, volume, resolution, options.cut, options.threads, t->report, progress);
+  t->decision = cut::decide(a, b, volume, resolution, options.cut, options.threads, t->report, progress);
   if (!t->decision.labels.connected) return t;
   progress.at(0.9);
-  const Transition transition = make_transition(a, b, t->decision, options.cut);
+  const cut::Transition transition = make_transition(a, b, t->decision, options.cut);
   progress.stage("Clipping", 50, 75);
   t->a = clip_model(a, true, t->decision, transition, options.cut, options.threads);
   progress.at(0.5);
   t->b = clip_model(b, false, t->decision, transition, options.cut, options.threads);
   progress.stage("Stitching and smoothing", 75, 95);
-  t->joined = join_parts(a, t->a, b, t->b);
+  t->joined = seam::join_parts(a, t->a, b, t->b);
   t->report.loops_a = int(t->joined.loops_a.size()), t->report.loops_b = int(t->joined.loops_b.size());
   if (!options.stitch) return t;
   const double voxel = t->report.voxel_size;
-  t->flaws = stitch_parts(t->joined, (3 + 2 * t->decision.reach) * voxel, t->report);
+  t->flaws = seam::stitch_parts(t->joined, (3 + 2 * t->decision.reach) * voxel, t->report);
   progress.at(0.6);
-  t->flaws += voxel * double(finish_seam(t->joined, voxel, options.cut, options.smoothing, options.threads));
+  t->flaws += voxel * double(seam::finish_seam(t->joined, voxel, options.cut, options.smoothing, options.threads));
   return t;
 }
 
 /// At the user's resolution; or at the natural one, coarser while the models do
 /// not meet, finer while their constraints share a voxel or the seam has flaws.
-std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, const ComposeOptions& options,
+std::unique_ptr<Attempt> best_attempt(cut::Model& a, cut::Model& b, const Box& volume, const ComposeOptions& options,
                                       Progress& progress) {
   constexpr int kCoarsest = 24, kFinest = 384, kFiner = 2;
   const UserError apart(
@@ -98,7 +99,7 @@ std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, con
     if (!t->decision.labels.connected) throw apart;
     return t;
   }
-  int resolution = natural_resolution(a, b, volume);
+  int resolution = cut::natural_resolution(a, b, volume);
   std::unique_ptr<Attempt> best;
   for (int finer = 0; finer <= kFiner;) try {
       auto t = attempt(a, b, volume, resolution, options, progress);
@@ -111,7 +112,7 @@ std::unique_ptr<Attempt> best_attempt(Model& a, Model& b, const Box& volume, con
       if (!best || t->flaws < best->flaws) best = std::move(t);
       if (best->flaws == 0 || resolution >= kFinest) break;
       resolution = std::min(kFinest, resolution * 8 / 5), ++finer;
-    } catch (const SharedVoxel&) {
+    } catch (const cut::SharedVoxel&) {
       if (best) break;
       if (finer++ == kFiner || resolution >= kFinest) throw;
       resolution = std::min(kFinest, resolution * 2);
@@ -131,7 +132,7 @@ void check(const ComposeOptions& o) {
     throw UserError("SmoothDistance must be a length of 0 or more; 0 means two voxels.");
 }
 
-void log_notes(const Model& m, const char* suffix, Progress& progress) {
+void log_notes(const cut::Model& m, const char* suffix, Progress& progress) {
   const auto say = [&](const char* what, int count) {
     if (count) progress.log(std::string(what) + suffix + ": " + std::to_string(count));
   };
@@ -142,7 +143,7 @@ void log_notes(const Model& m, const char* suffix, Progress& progress) {
 
 /// Six times the volume that the closed components enclose, negative if they
 /// are inside out; 0 if none is closed.
-double enclosed(const Prepared& p) {
+double enclosed(const mesh::Prepared& p) {
   const Vec3 origin = p.mesh.bounds().center();
   double sum = 0;
   for (int f = 0; f < p.mesh.face_count(); ++f)
@@ -153,16 +154,17 @@ double enclosed(const Prepared& p) {
 
 }  // namespace
 
-ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptions& options, Progress& progress) {
+ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const ComposeOptions& options,
+                      Progress& progress) {
   const Clock clock;
   check(options);
   progress.stage("Preparing the models", 0, 10);
-  Model a = make_model(part_a, part_a.name.empty() ? "model A" : part_a.name),
-        b = make_model(part_b, part_b.name.empty() ? "model B" : part_b.name);
+  cut::Model a = cut::make_model(part_a, part_a.name.empty() ? "model A" : part_a.name),
+             b = cut::make_model(part_b, part_b.name.empty() ? "model B" : part_b.name);
   log_notes(a, "_A", progress), log_notes(b, "_B", progress);
-  const Box volume = transition_volume(a, b, options.volume);
+  const Box volume = cut::transition_volume(a, b, options.volume);
   const bool turned = enclosed(a.prepared) * enclosed(b.prepared) < 0;
-  if (turned) flip_orientation(b.prepared.mesh);
+  if (turned) mesh::flip_orientation(b.prepared.mesh);
 
   const std::unique_ptr<Attempt> best = best_attempt(a, b, volume, options, progress);
   progress.stage("Finishing", 95, 100);
@@ -171,7 +173,7 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   result.report.reversed_b = best->report.reversed_b != turned;
   if (options.transition_surface)
     result.transition =
-        transition_surface(best->decision.voxels, best->decision.labels, options.cut == Cut::Thesis ? 0 : 6);
+        cut::transition_surface(best->decision.voxels, best->decision.labels, options.cut == cut::Cut::Thesis ? 0 : 6);
   result.composed = std::move(best->joined.mesh);
   result.face_from_b = std::move(best->joined.tag);
   result.clipped_a = std::move(best->a.mesh), result.clipped_b = std::move(best->b.mesh);
@@ -180,4 +182,4 @@ ComposeResult compose(const Part& part_a, const Part& part_b, const ComposeOptio
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::compose

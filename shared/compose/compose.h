@@ -9,20 +9,20 @@
 #include "parts/mesh/mesh.h"
 #include "parts/seam/seam.h"
 
-namespace parts {
+namespace parts::compose {
 
 struct ComposeOptions {
   int resolution = 0;  ///< voxels along the longest side; 0 = from the meshes and the memory
-  Cut cut = Cut::Refined;
+  cut::Cut cut = cut::Cut::Refined;
   bool stitch = true;
-  SeamSmoothing smoothing;
+  seam::SeamSmoothing smoothing;
   bool transition_surface = false;  ///< compute ComposeResult::transition
   Box volume;                       ///< where the models may be joined; empty = their union's box
   int threads = 0;                  ///< 0 = all cores; the result does not depend on it
 };
 
 /// What a composition measured.
-struct ComposeReport : CutReport, SeamReport {
+struct ComposeReport : cut::CutReport, seam::SeamReport {
   double seconds = 0;
 };
 
@@ -41,6 +41,6 @@ struct ComposeResult {
 /// @throws UserError  an empty model or constraint, a constraint outside the
 ///                    volume, models that do not touch, too little memory, …
 /// @throws Cancelled
-ComposeResult compose(const Part& a, const Part& b, const ComposeOptions& options, Progress& progress);
+ComposeResult compose(const cut::Part& a, const cut::Part& b, const ComposeOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::compose

@@ -4,7 +4,7 @@
 #include "parts/base/error.h"
 #include "parts/cut/rasterize.h"
 
-namespace parts {
+namespace parts::compose {
 namespace {
 
 /// Squared distance from a point to a triangle (its nearest point by Ericson's regions).
@@ -39,7 +39,7 @@ void mark_touching(const Mesh& mesh, const Box& box, std::vector<char>& keep) {
     if (!box.intersects(mesh.face_box(f))) continue;
     std::array<Vec3, 3> p;
     for (int k = 0; k < 3; ++k) p[k] = (mesh.corner(f, k) - box.min()).cwiseQuotient(size);
-    TriangleBoxTest(p[0], p[1], p[2]).for_each_box({1, 1, 1}, [&](int, int, int) { keep[f] = 1; });
+    cut::TriangleBoxTest(p[0], p[1], p[2]).for_each_box({1, 1, 1}, [&](int, int, int) { keep[f] = 1; });
   }
 }
 
@@ -78,4 +78,4 @@ std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec
   return keep;
 }
 
-}  // namespace parts
+}  // namespace parts::compose

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::compose {
 
 /// The ways to say which faces of a model must survive. A constraint is a part
 /// of the surface, so it stays valid when the model moves (thesis 3.1).
@@ -19,4 +19,4 @@ enum class ConstraintBy { SelectedFaces, SelectedVertices, Box };
 std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec3& box_min, const Vec3& box_max,
                                     const char* model);
 
-}  // namespace parts
+}  // namespace parts::compose

@@ -3,7 +3,7 @@
 
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::compose {
 namespace {
 
 /// The share t (0..1] of the way to the pose.
@@ -66,4 +66,4 @@ std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fix
   return results;
 }
 
-}  // namespace parts
+}  // namespace parts::compose

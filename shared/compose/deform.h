@@ -5,7 +5,7 @@
 
 #include "parts/compose/compose.h"
 
-namespace parts {
+namespace parts::compose {
 
 /// A similarity about a pivot: mirror, scale, rotate, then translate.
 struct RigidPose {
@@ -25,4 +25,4 @@ struct RigidPose {
 std::vector<ComposeResult> deform(const Mesh& mesh, const std::vector<char>& fixed, const std::vector<char>& moving,
                                   const RigidPose& pose, int frames, const ComposeOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::compose

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace parts {
+namespace parts::cut {
 
 /// Number of bits set. Plain arithmetic: without the processor's own instruction,
 /// which not every x86-64 has, the compiler's builtin is a call into a library.
@@ -63,4 +63,4 @@ class VoxelSet {
   long size_ = 0;
 };
 
-}  // namespace parts
+}  // namespace parts::cut

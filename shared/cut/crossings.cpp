@@ -3,7 +3,7 @@
 
 #include "parts/cut/rasterize.h"
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 /// (seam voxel's number, face) for all faces of a mesh that touch seam voxels, sorted.
@@ -89,4 +89,4 @@ std::vector<Vec3> crossing_points(const Mesh& a, const Mesh& b, const JointVoxel
   return points;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -3,10 +3,10 @@
 
 #include "parts/cut/labels.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// Points on the curves in which the two meshes cross at a clear angle (over
 /// 20°), within the seam voxels. There the best border is known exactly.
 std::vector<Vec3> crossing_points(const Mesh& a, const Mesh& b, const JointVoxels& voxels, const VoxelLabels& labels);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace parts {
+namespace parts::cut {
 
 /// Which cut decides where one model ends and the other begins.
 enum class Cut {
@@ -20,4 +20,4 @@ struct CutReport {
   double cut_seconds = 0;
 };
 
-}  // namespace parts
+}  // namespace parts::cut

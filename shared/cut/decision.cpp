@@ -5,7 +5,7 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::cut {
 
 Decision decide(Model& a, Model& b, const Box& volume, int resolution, Cut cut, int threads, CutReport& report,
                 Progress& progress) {
@@ -45,4 +45,4 @@ Decision decide(Model& a, Model& b, const Box& volume, int resolution, Cut cut, 
   return d;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -7,7 +7,7 @@
 #include "parts/cut/labels.h"
 #include "parts/cut/volume.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// Constraints of both models pass through one voxel: the grid is too coarse.
 struct SharedVoxel : UserError {
@@ -30,4 +30,4 @@ struct Decision {
 Decision decide(Model& a, Model& b, const Box& volume, int resolution, Cut cut, int threads, CutReport& report,
                 Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// A box of cubic voxels. Voxel (i, j, k) covers origin + size * [i, i+1) × …
 struct Grid {
@@ -39,4 +39,4 @@ struct Grid {
   }
 };
 
-}  // namespace parts
+}  // namespace parts::cut

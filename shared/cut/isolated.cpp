@@ -4,7 +4,7 @@
 #include <flann/flann.hpp>
 #include <limits>
 
-namespace parts {
+namespace parts::cut {
 
 void label_isolated(const JointVoxels& voxels, const std::vector<int>& group, int groups,
                     std::vector<std::int8_t>& label) {
@@ -39,4 +39,4 @@ void label_isolated(const JointVoxels& voxels, const std::vector<int>& group, in
     if (group[n] >= 0) label[n] = of_group[group[n]];
 }
 
-}  // namespace parts
+}  // namespace parts::cut

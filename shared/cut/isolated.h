@@ -3,7 +3,7 @@
 
 #include "parts/cut/labels.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// Gives every undecided group of nodes (components that no seam touches: eyes
 /// in a head, a button on a coat) the label of the nearest decided node.
@@ -12,4 +12,4 @@ namespace parts {
 void label_isolated(const JointVoxels& voxels, const std::vector<int>& group, int groups,
                     std::vector<std::int8_t>& label);
 
-}  // namespace parts
+}  // namespace parts::cut

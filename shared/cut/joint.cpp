@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/cut/joint.h"
 
-namespace parts {
+namespace parts::cut {
 
 JointVoxels join(const Grid& grid, const VoxelSet& a, const VoxelSet& b, const VoxelSet& keep_a,
                  const VoxelSet& keep_b) {
@@ -20,4 +20,4 @@ JointVoxels join(const Grid& grid, const VoxelSet& a, const VoxelSet& b, const V
   return v;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

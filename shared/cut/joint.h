@@ -4,7 +4,7 @@
 #include "parts/cut/bits.h"
 #include "parts/cut/grid.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// What passes through a voxel, as bit flags.
 enum VoxelFlag : std::uint8_t { kHasA = 1, kHasB = 2, kKeepA = 4, kKeepB = 8 };
@@ -50,4 +50,4 @@ void for_each_edge(const Grid& grid, const VoxelSet& set, const std::vector<std:
   }
 }
 
-}  // namespace parts
+}  // namespace parts::cut

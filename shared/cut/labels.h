@@ -3,7 +3,7 @@
 
 #include "parts/cut/joint.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// A minimal cut as a label a node of JointVoxels: whose surface is kept there.
 struct VoxelLabels {
@@ -39,4 +39,4 @@ struct RefinedOptions {
 VoxelLabels refined_cut(const JointVoxels& voxels, const std::vector<Eigen::Vector3f>& normal_a,
                         const std::vector<Eigen::Vector3f>& normal_b, const RefinedOptions& options);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <new>
 
-namespace parts {
+namespace parts::cut {
 
 /// Throws std::bad_alloc where the library would end the program.
 struct FlowGraph : maxflow::Graph<int, std::int64_t, std::int64_t> {
@@ -18,4 +18,4 @@ struct FlowGraph : maxflow::Graph<int, std::int64_t, std::int64_t> {
 constexpr std::int64_t kUncuttableTerminal = std::int64_t(1) << 60;
 constexpr int kUncuttable = 1 << 30;
 
-}  // namespace parts
+}  // namespace parts::cut

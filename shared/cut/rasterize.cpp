@@ -3,7 +3,7 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::cut {
 
 VoxelSet rasterize(const Mesh& mesh, const std::vector<char>& flags, const Grid& grid, int threads) {
   VoxelSet set(grid.count());
@@ -15,4 +15,4 @@ VoxelSet rasterize(const Mesh& mesh, const std::vector<char>& flags, const Grid&
   return set;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -4,7 +4,7 @@
 #include "parts/cut/bits.h"
 #include "parts/cut/grid.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// The separating-axis test of one triangle against unit boxes, in voxel units
 /// (Akenine-Möller 2001). Boxes are taken a hair larger than they are, so that
@@ -104,4 +104,4 @@ void for_each_voxel(const Grid& grid, const Mesh& mesh, int face, const Visit& v
 /// The voxels that the faces with flag 1 touch (no flags: all faces).
 VoxelSet rasterize(const Mesh& mesh, const std::vector<char>& flags, const Grid& grid, int threads);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -6,7 +6,7 @@
 #include "parts/cut/labels.h"
 #include "parts/cut/max_flow.h"
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 /// Every voxel within `reach` of a set voxel, in the largest coordinate.
@@ -322,4 +322,4 @@ VoxelLabels refined_cut(const JointVoxels& voxels, const std::vector<Eigen::Vect
   return cut.labels();
 }
 
-}  // namespace parts
+}  // namespace parts::cut

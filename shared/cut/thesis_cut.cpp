@@ -4,7 +4,7 @@
 #include "parts/cut/labels.h"
 #include "parts/cut/max_flow.h"
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 /// Components of the graph that hold no constraint at all take the label of
@@ -85,4 +85,4 @@ VoxelLabels thesis_cut(const JointVoxels& voxels) {
   return cut;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -4,7 +4,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 constexpr int kBand = 4;  // voxels around the seam that are smoothed
@@ -170,4 +170,4 @@ void Transition::mark_near() {
   }
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -4,7 +4,7 @@
 #include "parts/cut/joint.h"
 #include "parts/cut/labels.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// The transition surface as the zero set of a field over the voxels: positive
 /// where A is kept, negative where B is. Both models are clipped by its sign,
@@ -37,4 +37,4 @@ class Transition {
   VoxelSet near_[2];           ///< for B's surface, for A's
 };
 
-}  // namespace parts
+}  // namespace parts::cut

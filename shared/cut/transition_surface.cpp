@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 constexpr int kFinest = 128;
@@ -96,4 +96,4 @@ Mesh transition_surface(const JointVoxels& voxels, const VoxelLabels& labels, in
   return mesh;
 }
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -3,7 +3,7 @@
 
 #include "parts/cut/labels.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// The transition surface as a mesh to look at (thesis 3.2.3): all voxel sides
 /// between voxels labelled A and B, turned toward A. Empty voxels take the label
@@ -12,4 +12,4 @@ namespace parts {
 /// @param smoothing  rounds of Laplacian smoothing; 0 shows the sides as they are
 Mesh transition_surface(const JointVoxels& voxels, const VoxelLabels& labels, int smoothing);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -7,7 +7,7 @@
 #include "parts/cut/rasterize.h"
 #include "parts/mesh/edges.h"
 
-namespace parts {
+namespace parts::cut {
 namespace {
 
 bool any(const std::vector<char>& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
@@ -25,7 +25,7 @@ void add_outer_pieces(Model& model, bool of_a, const Box& volume, JointVoxels& v
   for (int f = 0; f < mesh.face_count(); ++f) outer[f] = !volume.contains(mesh.face_box(f));
   if (!any(outer)) return;
   DisjointSets sets(mesh.face_count());
-  for_each_mesh_edge(sorted_half_edges(mesh), [&](auto first, auto last) {
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(mesh), [&](auto first, auto last) {
     for (auto e = first + 1; e < last; ++e)
       if (outer[first->face] && outer[e->face]) sets.unite(first->face, e->face);
   });
@@ -80,7 +80,7 @@ Model make_model(const Part& part, const std::string& name) {
     throw UserError("There are no faces in " + name + "; choose a layer that holds a triangle mesh.");
   if (part.keep.size() != part.mesh.faces.size() || !any(part.keep))
     throw UserError("Nothing of " + name + " is marked to be kept; select faces on it, or give a box or a point.");
-  Model m{name, prepare(part.mesh), {}, {}};
+  Model m{name, mesh::prepare(part.mesh), {}, {}};
   if (m.prepared.mesh.faces.empty())
     throw UserError("There is no usable face in " + name +
                     " (all have non-finite or coinciding corners); clean the mesh first.");
@@ -210,4 +210,4 @@ double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const 
   return std::min(1.0, double(doubled) / double(std::max(1L, std::min(kept_a, kept_b))));
 }
 
-}  // namespace parts
+}  // namespace parts::cut

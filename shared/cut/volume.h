@@ -8,7 +8,7 @@
 #include "parts/cut/labels.h"
 #include "parts/mesh/prepare.h"
 
-namespace parts {
+namespace parts::cut {
 
 /// A model and the faces of it that must survive (one flag a face).
 struct Part {
@@ -20,7 +20,7 @@ struct Part {
 /// A model ready to be cut: its prepared mesh and its flags.
 struct Model {
   std::string name;  ///< in sentences: "model A"
-  Prepared prepared;
+  mesh::Prepared prepared;
   std::vector<char> keep;  ///< per face: must survive
   std::vector<int> piece;  ///< per face: number of its outer piece in JointVoxels, -1 inside the volume
 };
@@ -50,4 +50,4 @@ std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& 
 double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Eigen::Vector3f>& normal_a,
                     const std::vector<Eigen::Vector3f>& normal_b);
 
-}  // namespace parts
+}  // namespace parts::cut

@@ -8,7 +8,7 @@
 #include "parts/render/mask.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::depth {
 
 cv::Matx23d Placement::matrix() const {
   const double a = scale * std::cos(rotation * CV_PI / 180), b = scale * std::sin(rotation * CV_PI / 180);
@@ -59,23 +59,23 @@ struct Small {
 
 Small shrink(const DepthQuery& query, int longest) {
   Small s;
-  const cv::Mat grey = extend(intensity(query.color), query.mask);
+  const cv::Mat grey = synthesis::extend(intensity(query.color), query.mask);
   cv::Mat coverage;
   cv::Mat(query.mask != 0).convertTo(coverage, CV_32F, 1 / 255.);
   s.shrink = std::max(1., std::max(grey.cols, grey.rows) / double(longest));
   const cv::Size size(std::max(1, int(grey.cols / s.shrink)), std::max(1, int(grey.rows / s.shrink)));
   cv::resize(grey, s.grey, size, 0, 0, cv::INTER_AREA);
   cv::resize(coverage, s.coverage, size, 0, 0, cv::INTER_AREA);
-  s.center = centroid(query.mask);
+  s.center = render::centroid(query.mask);
   s.area = cv::countNonZero(query.mask);
   return s;
 }
 
-PatchImage place_small(const Small& small, const Placement& p, cv::Size frame, double frame_shrink) {
+synthesis::PatchImage place_small(const Small& small, const Placement& p, cv::Size frame, double frame_shrink) {
   Placement q = p;
   q.scale *= small.shrink / frame_shrink;
   q.from = p.from / small.shrink, q.to = p.to / frame_shrink;
-  PatchImage image;
+  synthesis::PatchImage image;
   image.planes = {warp(small.grey, q.matrix(), q.scale, frame, cv::BORDER_REPLICATE)};
   image.mask = warp(small.coverage, q.matrix(), q.scale, frame, cv::BORDER_CONSTANT) >= 0.5f;
   return image;
@@ -83,8 +83,8 @@ PatchImage place_small(const Small& small, const Placement& p, cv::Size frame, d
 
 }  // namespace
 
-PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size frame) {
-  PatchImage image;
+synthesis::PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size frame) {
+  synthesis::PatchImage image;
   const cv::Mat grey = intensity(query.color);
   if (is_identity(placement, query.color.size(), frame)) {
     image.planes = {grey};
@@ -93,13 +93,14 @@ PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size f
   }
   cv::Mat coverage;
   cv::Mat(query.mask != 0).convertTo(coverage, CV_32F, 1 / 255.);
-  image.planes = {warp(extend(grey, query.mask), placement.matrix(), placement.scale, frame, cv::BORDER_REPLICATE)};
+  image.planes = {
+      warp(synthesis::extend(grey, query.mask), placement.matrix(), placement.scale, frame, cv::BORDER_REPLICATE)};
   image.mask = warp(coverage, placement.matrix(), placement.scale, frame, cv::BORDER_CONSTANT) >= 0.5f;
   return image;
 }
 
-double image_difference(const PatchImage& a, const PatchImage& b) {
-  const cv::Point2d shift = centroid(a.mask) - centroid(b.mask);
+double image_difference(const synthesis::PatchImage& a, const synthesis::PatchImage& b) {
+  const cv::Point2d shift = render::centroid(a.mask) - render::centroid(b.mask);
   const int dx = int(std::lround(shift.x)), dy = int(std::lround(shift.y));
   const auto at = [&](int x, int y) {
     return x >= 0 && y >= 0 && x < b.mask.cols && y < b.mask.rows && b.mask.at<uchar>(y, x);
@@ -130,17 +131,17 @@ Placement fit_query(const DepthQuery& query, cv::Size frame) {
 
 Placement align_query(const DepthQuery& query, Gallery& gallery, const DepthOptions& options) {
   // Objects from the views that the query may be seen from.
-  std::vector<View> views = options.views;
+  std::vector<render::View> views = options.views;
   if (!gallery.has_any_view()) views = gallery.stored_views();
   if (options.update_views && gallery.has_any_view())
-    for (const View& v : options.views)
+    for (const render::View& v : options.views)
       for (int i = -1; i <= 1; i += 2)
         views.push_back({v.yaw + 25 * i, v.pitch}), views.push_back({v.yaw, v.pitch + 18 * i});
   const int objects = std::min(6, gallery.size());
-  std::vector<const PatchImage*> examples;
+  std::vector<const synthesis::PatchImage*> examples;
   double area = 0;
   for (int i = 0; i < objects; ++i)
-    for (const View& v : views) {
+    for (const render::View& v : views) {
       examples.push_back(&gallery.small(i * gallery.size() / objects, v));
       area += cv::countNonZero(examples.back()->mask);
     }
@@ -150,10 +151,10 @@ Placement align_query(const DepthQuery& query, Gallery& gallery, const DepthOpti
   const Small small = shrink(query, 2 * Gallery::thumbnail_size);
 
   const auto misfit = [&](const Placement& p) {
-    const PatchImage image = place_small(small, p, small_frame, frame_shrink);
+    const synthesis::PatchImage image = place_small(small, p, small_frame, frame_shrink);
     if (cv::countNonZero(image.mask) < 8) return 1e9;
     double least = 1e9;
-    for (const PatchImage* e : examples) least = std::min(least, image_difference(image, *e));
+    for (const synthesis::PatchImage* e : examples) least = std::min(least, image_difference(image, *e));
     return least;
   };
   Placement plain = fit_query(query, frame);
@@ -184,4 +185,4 @@ Placement align_query(const DepthQuery& query, Gallery& gallery, const DepthOpti
   return least < 0.85 * plain_misfit ? best : plain;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

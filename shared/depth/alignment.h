@@ -4,7 +4,7 @@
 #include "parts/depth/gallery.h"
 #include "parts/depth/reconstruct_depth.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// How the query's pixels map into the examples' frame: turned by an angle,
 /// scaled, and moved so that one point falls on another.
@@ -19,11 +19,11 @@ struct Placement {
 
 /// The query as an example's equal: its part in the frame, smoothed where it
 /// gets smaller. planes {intensity}.
-PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size frame);
+synthesis::PatchImage place(const DepthQuery& query, const Placement& placement, cv::Size frame);
 
 /// How different two images are, each moved onto its foreground's centroid:
 /// mean squared difference of intensities, contrast evened out, and of the masks.
-double image_difference(const PatchImage& a, const PatchImage& b);
+double image_difference(const synthesis::PatchImage& a, const synthesis::PatchImage& b);
 
 /// Scale and rotation in the image plane by which the query fits an example
 /// best (thesis 4.3.3). Keeps the query as it is where another placement fits no
@@ -33,4 +33,4 @@ Placement align_query(const DepthQuery& query, Gallery& gallery, const DepthOpti
 /// Without a search: as it is if it has the frame's size, else fitted into it.
 Placement fit_query(const DepthQuery& query, cv::Size frame);
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -8,12 +8,12 @@
 #include "parts/depth/alignment.h"
 #include "parts/render/mask.h"
 
-namespace parts {
+namespace parts::depth {
 namespace {
 
 constexpr double same_view = 5;  ///< degrees
 
-bool same(const View& a, const View& b) { return a.yaw == b.yaw && a.pitch == b.pitch; }
+bool same(const render::View& a, const render::View& b) { return a.yaw == b.yaw && a.pitch == b.pitch; }
 
 cv::Mat halved(const cv::Mat& plane, int times) {
   cv::Mat result = plane;
@@ -28,7 +28,7 @@ cv::Mat halved(const cv::Mat& plane, int times) {
 // (D - Di)^2 over the foreground, centroids and means aligned.
 double depth_difference(const cv::Mat& estimate, const cv::Mat& mask, const cv::Mat& depth, const cv::Mat& depth_mask,
                         double scale) {
-  const cv::Point2d shift = centroid(mask) - centroid(depth_mask);
+  const cv::Point2d shift = render::centroid(mask) - render::centroid(depth_mask);
   const int dx = int(std::lround(shift.x)), dy = int(std::lround(shift.y));
   double n = 0, sum = 0, squares = 0;
   for (int y = 0; y < mask.rows; ++y)
@@ -43,18 +43,18 @@ double depth_difference(const cv::Mat& estimate, const cv::Mat& mask, const cv::
 
 }  // namespace
 
-ExampleSet::ExampleSet(Gallery& gallery, const DepthOptions& options, const std::vector<View>& views,
-                       const PatchImage& small)
+ExampleSet::ExampleSet(Gallery& gallery, const DepthOptions& options, const std::vector<render::View>& views,
+                       const synthesis::PatchImage& small)
     : gallery_(gallery), options_(options) {
   // A database of stored views may have the same one for several that are asked for.
   struct Candidate {
     double difference;
     int object;
-    View view;
+    render::View view;
   };
-  ExampleChange ignored;
+  synthesis::ExampleChange ignored;
   const int each = std::max(1, options.examples / int(views.size()));
-  for (const View& v : views) {
+  for (const render::View& v : views) {
     std::vector<Candidate> list;
     for (int k = 0; k < gallery.size(); ++k)
       list.push_back({image_difference(small, gallery.small(k, v)), k, gallery.nearest(k, v)});
@@ -70,28 +70,29 @@ ExampleSet::ExampleSet(Gallery& gallery, const DepthOptions& options, const std:
   }
 }
 
-PatchImage ExampleSet::front(size_t k) const {
-  PatchImage e = all_[k].image;
+synthesis::PatchImage ExampleSet::front(size_t k) const {
+  synthesis::PatchImage e = all_[k].image;
   e.planes.resize(2);
   return e;
 }
 
-void ExampleSet::add(int object, const View& view, ExampleChange& change) {
+void ExampleSet::add(int object, const render::View& view, synthesis::ExampleChange& change) {
   all_.push_back(gallery_.get(object, view));
   change.add.push_back(front(all_.size() - 1));
 }
 
-bool ExampleSet::in_use(const SynthesisState& state, int object, const View& view) const {
+bool ExampleSet::in_use(const synthesis::SynthesisState& state, int object, const render::View& view) const {
   for (size_t k = 0; k < state.active.size(); ++k)
     if (state.active[k] && all_[k].object == object && same(all_[k].view, view)) return true;
   return false;
 }
 
-std::vector<int> ExampleSet::nearest_objects(const SynthesisState& state, const View& view, int count) const {
+std::vector<int> ExampleSet::nearest_objects(const synthesis::SynthesisState& state, const render::View& view,
+                                             int count) const {
   std::vector<std::pair<double, int>> list;
   for (int k = 0; k < gallery_.size(); ++k) {
     if (in_use(state, k, gallery_.nearest(k, view))) continue;
-    const PatchImage& e = gallery_.small(k, view);
+    const synthesis::PatchImage& e = gallery_.small(k, view);
     // Both at the coarser of their scales.
     const int shrunk = int(std::lround(std::log2(double(gallery_.image_size().width) / e.mask.cols)));
     const int level = std::max(shrunk, state.level);
@@ -108,9 +109,9 @@ std::vector<int> ExampleSet::nearest_objects(const SynthesisState& state, const 
   return objects;
 }
 
-ExampleChange ExampleSet::update(const SynthesisState& state) {
+synthesis::ExampleChange ExampleSet::update(const synthesis::SynthesisState& state) {
   struct InUse {
-    View view;
+    render::View view;
     double patches = 0;
     std::vector<int> examples;
   };
@@ -127,15 +128,15 @@ ExampleChange ExampleSet::update(const SynthesisState& state) {
     total += double(state.used[k]), yaw += double(state.used[k]) * all_[k].view.yaw;
     pitch += double(state.used[k]) * all_[k].view.pitch;
   }
-  ExampleChange change;
+  synthesis::ExampleChange change;
   if (total <= 0) return change;
   std::stable_sort(views.begin(), views.end(), [](const InUse& a, const InUse& b) { return a.patches < b.patches; });
 
-  View view = views.back().view;  // of new objects: the most used
+  render::View view = views.back().view;  // of new objects: the most used
   if (options_.update_views && views.size() > 1) {
-    const View mean = gallery_.nearest(0, {yaw / total, pitch / total});
+    const render::View mean = gallery_.nearest(0, {yaw / total, pitch / total});
     const bool close = std::any_of(views.begin(), views.end(),
-                                   [&](const InUse& u) { return angle_between(u.view, mean) < same_view; });
+                                   [&](const InUse& u) { return examples::angle_between(u.view, mean) < same_view; });
     if (!close) {
       const std::vector<int> objects = nearest_objects(state, mean, int(views.front().examples.size()));
       change.drop = views.front().examples;
@@ -153,4 +154,4 @@ ExampleChange ExampleSet::update(const SynthesisState& state) {
   return change;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

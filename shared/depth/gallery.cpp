@@ -8,7 +8,7 @@
 #include "parts/base/error.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::depth {
 
 cv::Mat intensity(const cv::Mat& color) {
   cv::Mat grey, result;
@@ -17,14 +17,14 @@ cv::Mat intensity(const cv::Mat& color) {
   return result;
 }
 
-PatchImage thumbnail(const PatchImage& image, int longest) {
+synthesis::PatchImage thumbnail(const synthesis::PatchImage& image, int longest) {
   int levels = 1;
   while ((std::max(image.mask.cols, image.mask.rows) >> (levels - 1)) > longest) ++levels;
   if (levels == 1) return image;
-  PatchImage result;
+  synthesis::PatchImage result;
   cv::Mat coverage;
   cv::Mat(image.mask != 0).convertTo(coverage, CV_32F, 1 / 255.);
-  const cv::Mat small = gaussian_pyramid(coverage, levels).back();
+  const cv::Mat small = synthesis::gaussian_pyramid(coverage, levels).back();
   result.mask = small >= 0.5f;
   if (cv::countNonZero(result.mask) == 0) result.mask = small > 0;  // thinner than a pixel
   for (size_t p = 0; p < image.planes.size(); ++p) {
@@ -32,14 +32,14 @@ PatchImage thumbnail(const PatchImage& image, int longest) {
       result.planes.emplace_back();
       continue;
     }
-    cv::Mat plane = gaussian_pyramid(extend(image.planes[p], image.mask), levels).back();
+    cv::Mat plane = synthesis::gaussian_pyramid(synthesis::extend(image.planes[p], image.mask), levels).back();
     if (p > 0) plane /= double(1 << (levels - 1));  // depths are in pixels
     result.planes.push_back(plane);
   }
   return result;
 }
 
-Gallery::Gallery(ExampleSource& source, int most, unsigned seed) : source_(source) {
+Gallery::Gallery(examples::ExampleSource& source, int most, unsigned seed) : source_(source) {
   for (int i = 0; i < source.size(); ++i) objects_.push_back(i);
   if (source.size() > most) {
     std::mt19937 engine(seed);
@@ -49,24 +49,24 @@ Gallery::Gallery(ExampleSource& source, int most, unsigned seed) : source_(sourc
     std::sort(objects_.begin(), objects_.end());
   }
   for (int object : objects_)
-    for (const View& v : source.views(object)) {
+    for (const render::View& v : source.views(object)) {
       any_view_ = false;
       const bool known = std::any_of(views_.begin(), views_.end(),
-                                     [&](const View& w) { return w.yaw == v.yaw && w.pitch == v.pitch; });
+                                     [&](const render::View& w) { return w.yaw == v.yaw && w.pitch == v.pitch; });
       if (!known) views_.push_back(v);
     }
 }
 
-void Gallery::set_light(const Light& light) {
+void Gallery::set_light(const examples::Light& light) {
   source_.set_light(light);
   small_.clear();
 }
 
-View Gallery::nearest(int k, const View& view) const {
-  View best = view;
+render::View Gallery::nearest(int k, const render::View& view) const {
+  render::View best = view;
   double least = 1e30;
-  for (const View& v : source_.views(objects_[k]))
-    if (const double a = angle_between(v, view); a < least) least = a, best = v;
+  for (const render::View& v : source_.views(objects_[k]))
+    if (const double a = examples::angle_between(v, view); a < least) least = a, best = v;
   return best;
 }
 
@@ -78,7 +78,7 @@ cv::Mat without_pits(const cv::Mat& depth, const cv::Mat& mask) {
   double low, high;
   cv::minMaxLoc(depth, &low, &high, nullptr, nullptr, mask);
   const int side = std::max(3, std::max(depth.cols, depth.rows) / 60 | 1);
-  const cv::Mat full = extend(depth, mask), window = cv::Mat::ones(side, side, CV_8U);
+  const cv::Mat full = synthesis::extend(depth, mask), window = cv::Mat::ones(side, side, CV_8U);
   cv::Mat opened, result = depth.clone();
   cv::morphologyEx(full, opened, cv::MORPH_OPEN, window);
   opened.copyTo(result, (full - opened > 0.04 * (high - low)) & mask);
@@ -87,8 +87,8 @@ cv::Mat without_pits(const cv::Mat& depth, const cv::Mat& mask) {
 
 }  // namespace
 
-Prepared Gallery::get(int k, const View& view) {
-  const Example e = source_.get(objects_[k], view);
+Prepared Gallery::get(int k, const render::View& view) {
+  const examples::Example e = source_.get(objects_[k], view);
   Prepared p;
   p.object = k;
   p.view = e.view;
@@ -101,12 +101,12 @@ Prepared Gallery::get(int k, const View& view) {
   return p;
 }
 
-const PatchImage& Gallery::small(int k, const View& view) {
-  const View v = nearest(k, view);
+const synthesis::PatchImage& Gallery::small(int k, const render::View& view) {
+  const render::View v = nearest(k, view);
   const auto key = std::make_tuple(k, v.yaw, v.pitch);
   const auto found = small_.find(key);
   if (found != small_.end()) return found->second;
   return small_.emplace(key, thumbnail(get(k, v).image, thumbnail_size)).first->second;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -9,16 +9,16 @@
 #include "parts/examples/example.h"
 #include "parts/synthesis/synthesis.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// An example made ready for comparing: planes {intensity 0..1, depth, back
 /// depth where there is one}. Depths in pixels, centred on the foreground's mean
 /// front depth, so that they compare across objects, cameras and units.
 struct Prepared {
   int object = 0;
-  View view;
-  PatchImage image;
-  Camera camera;
+  render::View view;
+  synthesis::PatchImage image;
+  render::Camera camera;
   double pixels_per_unit = 1;
   double middle = 0;  ///< world units: the mean front depth
 };
@@ -28,7 +28,7 @@ cv::Mat intensity(const cv::Mat& color);
 
 /// A smaller image: halved until its longer side is at most `longest`.
 /// Positions and depths are halved too.
-PatchImage thumbnail(const PatchImage& image, int longest);
+synthesis::PatchImage thumbnail(const synthesis::PatchImage& image, int longest);
 
 /// The objects of a source that take part in one reconstruction, and small
 /// copies of what was seen of them, kept.
@@ -38,30 +38,30 @@ class Gallery {
 
   /// @param most  objects that take part; of a larger source every so manieth,
   ///              which ones depends on the seed
-  Gallery(ExampleSource& source, int most, unsigned seed);
+  Gallery(examples::ExampleSource& source, int most, unsigned seed);
 
   int size() const { return int(objects_.size()); }
   const std::string& name(int k) const { return source_.name(objects_[k]); }
   bool has_any_view() const { return any_view_; }
   /// The views that are stored of any object; empty if it can be rendered from any.
-  const std::vector<View>& stored_views() const { return views_; }
+  const std::vector<render::View>& stored_views() const { return views_; }
   cv::Size image_size() const { return source_.image_size(); }
 
   /// In what light they are seen; nothing where it is fixed.
-  std::optional<Light> light() const { return source_.light(); }
-  void set_light(const Light& light);
+  std::optional<examples::Light> light() const { return source_.light(); }
+  void set_light(const examples::Light& light);
 
   /// The view of an object that is got when this one is asked for.
-  View nearest(int k, const View& view) const;
-  Prepared get(int k, const View& view);
-  const PatchImage& small(int k, const View& view);
+  render::View nearest(int k, const render::View& view) const;
+  Prepared get(int k, const render::View& view);
+  const synthesis::PatchImage& small(int k, const render::View& view);
 
  private:
-  ExampleSource& source_;
+  examples::ExampleSource& source_;
   std::vector<int> objects_;
-  std::vector<View> views_;
+  std::vector<render::View> views_;
   bool any_view_ = true;
-  std::map<std::tuple<int, double, double>, PatchImage> small_;
+  std::map<std::tuple<int, double, double>, synthesis::PatchImage> small_;
 };
 
-}  // namespace parts
+}  // namespace parts::depth

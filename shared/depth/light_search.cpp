@@ -7,7 +7,7 @@
 #include "parts/depth/view_search.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::depth {
 namespace {
 
 constexpr int most_objects = 6;
@@ -16,14 +16,14 @@ constexpr double clearly = 0.9;  ///< of the distance in the present light
 
 /// An object as it looks in any light.
 struct Unlit {
-  PatchImage image;  ///< {colours alone, depth}
-  cv::Mat normals;   ///< 32FC3, camera frame
+  synthesis::PatchImage image;  ///< {colours alone, depth}
+  cv::Mat normals;              ///< 32FC3, camera frame
 };
 
-Unlit unlit_object(const PatchImage& image) {
+Unlit unlit_object(const synthesis::PatchImage& image) {
   Unlit u{image, cv::Mat(image.mask.size(), CV_32FC3)};
   u.image.planes.resize(2);
-  const cv::Mat depth = extend(image.planes[1], image.mask);
+  const cv::Mat depth = synthesis::extend(image.planes[1], image.mask);
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) {
       const int l = std::max(0, x - 1), r = std::min(depth.cols - 1, x + 1);
@@ -35,8 +35,8 @@ Unlit unlit_object(const PatchImage& image) {
   return u;
 }
 
-PatchImage lit(const Unlit& object, const Light& light, int longest) {
-  PatchImage image = object.image;
+synthesis::PatchImage lit(const Unlit& object, const examples::Light& light, int longest) {
+  synthesis::PatchImage image = object.image;
   image.planes[0] = object.image.planes[0].clone();
   const Vec3 d = light.direction.normalized();
   const cv::Vec3f to(float(d.x()), float(d.y()), float(d.z()));
@@ -49,18 +49,18 @@ PatchImage lit(const Unlit& object, const Light& light, int longest) {
 }
 
 /// How far the query's patches are from those of objects in a light.
-double patch_distance(const PatchImage& query, const std::vector<Unlit>& objects, const Light& light,
-                      const DepthOptions& options) {
+double patch_distance(const synthesis::PatchImage& query, const std::vector<Unlit>& objects,
+                      const examples::Light& light, const DepthOptions& options) {
   const int longest = std::max(query.mask.cols, query.mask.rows);
-  std::vector<PatchImage> examples;
+  std::vector<synthesis::PatchImage> examples;
   for (const Unlit& object : objects) examples.push_back(lit(object, light, longest));
-  SynthesisOptions o = synthesis_options(options);
+  synthesis::SynthesisOptions o = synthesis_options(options);
   o.patch_sizes = {o.patch_sizes.front()};
   o.position *= 0.4, o.silhouette *= 0.25;  // of which light changes nothing
   o.longest_coarsest = 0;
   o.max_iterations = 1;
   Progress quiet;
-  return cv::mean(synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
+  return cv::mean(synthesis::synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
 }
 
 /// Turned away from the viewer's direction by an angle, towards an azimuth; degrees.
@@ -71,29 +71,30 @@ Vec3 direction(double slant, double azimuth) {
 
 }  // namespace
 
-Light find_light(const PatchImage& query, Gallery& gallery, const View& view, const DepthOptions& options) {
+examples::Light find_light(const synthesis::PatchImage& query, Gallery& gallery, const render::View& view,
+                           const DepthOptions& options) {
   if (!gallery.light()) return {};
-  const Light present = *gallery.light();
+  const examples::Light present = *gallery.light();
   std::vector<Unlit> objects;
   gallery.set_light({present.direction, 1});  // as if from everywhere: colours alone
   const int count = std::min(most_objects, gallery.size());
   for (int i = 0; i < count; ++i) objects.push_back(unlit_object(gallery.small(i * gallery.size() / count, view)));
   gallery.set_light(present);
-  PatchImage small = query;
+  synthesis::PatchImage small = query;
   small.planes.resize(1);
   if (cv::countNonZero(small.mask) > enough) small = thumbnail(small, Gallery::thumbnail_size / 2 + 1);
   small.planes.emplace_back();
 
-  Light best = present;
+  examples::Light best = present;
   double least = clearly * patch_distance(small, objects, present, options);
-  const auto offer = [&](const Light& light) {
+  const auto offer = [&](const examples::Light& light) {
     const double u = patch_distance(small, objects, light, options);
     if (u < least) least = u, best = light;
   };
   for (const double slant : {0., 35., 70.})
     for (int i = 0; i < (slant == 0 ? 1 : slant == 35 ? 6 : 8); ++i)
       offer({direction(slant, slant == 35 ? 60 * i : 45 * i), present.ambient});
-  const Light coarse = best;
+  const examples::Light coarse = best;
   if (coarse.direction == present.direction) return present;
   const Vec3 side = coarse.direction.unitOrthogonal(), up = coarse.direction.cross(side);
   for (int i = 0; i < 6; ++i)
@@ -103,4 +104,4 @@ Light find_light(const PatchImage& query, Gallery& gallery, const View& view, co
   return best;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -4,7 +4,7 @@
 #include "parts/depth/gallery.h"
 #include "parts/depth/reconstruct_depth.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// In what light the query was taken: of a few lights the one in which the
 /// objects, seen from the view, look most like the query, where that is clearly
@@ -13,6 +13,7 @@ namespace parts {
 /// @param query  small: gallery.small's scale
 /// @return gallery.light() where no other is clearly better; nothing to search
 ///         where examples are stored
-Light find_light(const PatchImage& query, Gallery& gallery, const View& view, const DepthOptions& options);
+examples::Light find_light(const synthesis::PatchImage& query, Gallery& gallery, const render::View& view,
+                           const DepthOptions& options);
 
-}  // namespace parts
+}  // namespace parts::depth

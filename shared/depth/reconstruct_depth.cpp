@@ -16,7 +16,7 @@
 #include "parts/depth/view_search.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::depth {
 namespace {
 
 constexpr double same_view = 5;  ///< degrees: nearer than this, a view in use does as well
@@ -55,8 +55,9 @@ cv::Mat to_query(const cv::Mat& plane, const Placement& placement, cv::Size size
 }
 
 // The camera of the examples' frame, and from it the query's.
-Camera query_camera(const Camera& example, double pixels_per_unit, const Placement& placement, cv::Size size) {
-  Camera c = example;
+render::Camera query_camera(const render::Camera& example, double pixels_per_unit, const Placement& placement,
+                            cv::Size size) {
+  render::Camera c = example;
   const cv::Vec2d center = placement.inverse() * cv::Vec3d(c.center.x() - 0.5, c.center.y() - 0.5, 1);
   c.center = {center[0] + 0.5, center[1] + 0.5};
   c.rotation = Eigen::AngleAxisd(-placement.rotation * EIGEN_PI / 180, Vec3::UnitZ()).toRotationMatrix() * c.rotation;
@@ -67,32 +68,32 @@ Camera query_camera(const Camera& example, double pixels_per_unit, const Placeme
 }
 
 // The back side: from front depth to the second layer (thesis 4.2).
-cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const ExampleSet& set, const SynthesisResult& fronts,
-                        const DepthOptions& options, Progress& progress) {
-  PatchImage query;
+cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const ExampleSet& set,
+                        const synthesis::SynthesisResult& fronts, const DepthOptions& options, Progress& progress) {
+  synthesis::PatchImage query;
   query.planes = {front, cv::Mat()};
   query.mask = mask;
-  std::vector<PatchImage> examples;
+  std::vector<synthesis::PatchImage> examples;
   for (size_t k = 0; k < set.size(); ++k) {
-    const PatchImage& e = set[k].image;
+    const synthesis::PatchImage& e = set[k].image;
     if (!fronts.active[k]) continue;
     if (e.planes.size() < 3)
       throw UserError("The database holds no back depth; build it with BackSide, or reconstruct without it.");
     examples.push_back({{e.planes[1], e.planes[2]}, e.mask});
   }
-  SynthesisOptions o = synthesis_options(options);
+  synthesis::SynthesisOptions o = synthesis_options(options);
   // Silhouettes say more of the back than the front's detail does; and a back is
   // smooth, so it starts on a coarser level.
   const double known = options.depth > 0 ? 1.5 * options.depth : 0.3;
   o.channels = {{0, known, false, false}, {1, 3.3 * known, false, false}};
   o.silhouette = 5 * options.silhouette;
   o.longest_coarsest = 32;
-  return synthesize(query, examples, o, {}, progress).planes[0];
+  return synthesis::synthesize(query, examples, o, {}, progress).planes[0];
 }
 
 }  // namespace
 
-DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, const DepthOptions& options,
+DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& source, const DepthOptions& options,
                               Progress& progress) {
   DepthQuery query = given;
   check_image(query.color);
@@ -110,37 +111,39 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   const Placement placement =
       options.align ? align_query(query, gallery, options) : fit_query(query, gallery.image_size());
   result.scale = placement.scale, result.rotation = placement.rotation;
-  const PatchImage placed = place(query, placement, gallery.image_size());
+  const synthesis::PatchImage placed = place(query, placement, gallery.image_size());
   if (cv::countNonZero(placed.mask) < 16)
     throw UserError("The object is too small in the image; give one that it fills, or align it.");
-  const PatchImage small = thumbnail(placed, Gallery::thumbnail_size);
+  const synthesis::PatchImage small = thumbnail(placed, Gallery::thumbnail_size);
 
   progress.stage("Searching the view", 10, 35);
-  std::vector<View> views = options.views;
-  const std::optional<Light> given_light = source.light();
-  const auto search_light = [&](const View& view) {
+  std::vector<render::View> views = options.views;
+  const std::optional<examples::Light> given_light = source.light();
+  const auto search_light = [&](const render::View& view) {
     if (options.update_light && given_light) gallery.set_light(find_light(small, gallery, view, options));
   };
   search_light(views.front());
-  std::optional<View> found;
+  std::optional<render::View> found;
   if (options.update_views) {
     found = find_view(small, gallery, options, progress);
-    const auto near =
-        std::find_if(views.begin(), views.end(), [&](const View& v) { return angle_between(v, *found) < same_view; });
+    const auto near = std::find_if(views.begin(), views.end(), [&](const render::View& v) {
+      return examples::angle_between(v, *found) < same_view;
+    });
     views = {near != views.end() ? *near : *found};
-    if (angle_between(views.front(), options.views.front()) > 2 * same_view) search_light(views.front());
+    if (examples::angle_between(views.front(), options.views.front()) > 2 * same_view) search_light(views.front());
   }
 
   progress.stage("Choosing examples", 35, 40);
   ExampleSet set(gallery, options, views, small);
-  PatchImage work = placed;
+  synthesis::PatchImage work = placed;
   work.planes.resize(2);
-  std::vector<PatchImage> examples;
+  std::vector<synthesis::PatchImage> examples;
   for (size_t k = 0; k < set.size(); ++k) examples.push_back(set.front(k));
 
   Progress part = progress.part(40, options.back ? 75 : 95);
-  const SynthesisResult fronts = synthesize(
-      work, examples, synthesis_options(options), [&](const SynthesisState& state) { return set.update(state); }, part);
+  const synthesis::SynthesisResult fronts = synthesis::synthesize(
+      work, examples, synthesis_options(options),
+      [&](const synthesis::SynthesisState& state) { return set.update(state); }, part);
   examples.clear();
 
   cv::Mat back;
@@ -163,7 +166,7 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
     if (fronts.used[k] > fronts.used[most]) most = k;
   }
   middle /= patches;
-  result.view = found && gallery.has_any_view() ? *found : View{yaw / patches, pitch / patches};
+  result.view = found && gallery.has_any_view() ? *found : render::View{yaw / patches, pitch / patches};
 
   // Back into the query's pixels, and into the database's units.
   const cv::Size size = query.color.size();
@@ -171,7 +174,8 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   result.camera = query_camera(set[most].camera, pixels_per_unit, placement, size);
   result.mask = query.mask != 0;
   const auto world = [&](const cv::Mat& plane) {
-    cv::Mat depth = to_query(extend(plane, work.mask), placement, size, cv::INTER_CUBIC) / pixels_per_unit + middle;
+    cv::Mat depth =
+        to_query(synthesis::extend(plane, work.mask), placement, size, cv::INTER_CUBIC) / pixels_per_unit + middle;
     depth.setTo(std::numeric_limits<float>::quiet_NaN(), result.mask == 0);
     return depth;
   };
@@ -190,4 +194,4 @@ DepthResult reconstruct_depth(const DepthQuery& given, ExampleSource& source, co
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -9,7 +9,7 @@
 #include "parts/base/progress.h"
 #include "parts/examples/example.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// One image of an object of the class.
 struct DepthQuery {
@@ -23,40 +23,40 @@ struct DepthOptions {
   double intensity = 1;                   ///< weights, >= 0: how much each component of a patch counts (4.3.1)
   double high_frequency = 0.5;
   double depth = 0.2;
-  double position = 5;              ///< relative to the foreground's centroid (4.1.4); 0: anywhere
-  double silhouette = 2;            ///< where a patch is foreground; also seen from the start of the search
-  std::vector<View> views{{0, 0}};  ///< from where the object may be seen; where the search for the view starts
-  bool update_objects = true;       ///< better examples replace those that are used least
-  bool update_views = true;         ///< the view is searched for too, up to 40 degrees around the views given
-  bool update_light = true;         ///< the light is searched for too, where examples are rendered
-  bool align = true;                ///< the query is turned and scaled in the image plane to fit the examples
-  bool segment = false;             ///< the foreground is found as well, within the mask (6.2)
-  bool back = false;                ///< the back side too, from the front (4.2)
-  int max_iterations = 10;          ///< a level
-  int objects = 64;                 ///< of the database that take part
-  unsigned seed = 0;                ///< chooses them where the database has more
-  int threads = 0;                  ///< 0 = all cores; the result does not depend on it
+  double position = 5;                      ///< relative to the foreground's centroid (4.1.4); 0: anywhere
+  double silhouette = 2;                    ///< where a patch is foreground; also seen from the start of the search
+  std::vector<render::View> views{{0, 0}};  ///< from where the object may be seen; where the search for the view starts
+  bool update_objects = true;               ///< better examples replace those that are used least
+  bool update_views = true;                 ///< the view is searched for too, up to 40 degrees around the views given
+  bool update_light = true;                 ///< the light is searched for too, where examples are rendered
+  bool align = true;                        ///< the query is turned and scaled in the image plane to fit the examples
+  bool segment = false;                     ///< the foreground is found as well, within the mask (6.2)
+  bool back = false;                        ///< the back side too, from the front (4.2)
+  int max_iterations = 10;                  ///< a level
+  int objects = 64;                         ///< of the database that take part
+  unsigned seed = 0;                        ///< chooses them where the database has more
+  int threads = 0;                          ///< 0 = all cores; the result does not depend on it
 };
 
 /// An example that was in use, and what it gave.
 struct UsedExample {
   std::string object;
-  View view;
+  render::View view;
   long patches = 0;
 };
 
 struct DepthResult {
-  cv::Mat depth;       ///< 32F, the query's size, the database's units from the camera; NaN = background
-  cv::Mat back_depth;  ///< the same of the back; empty unless asked for
-  cv::Mat mask;        ///< 8U, 255 = foreground
-  Camera camera;       ///< in which the query shows what the depth says, in the database's frame; orthographic
+  cv::Mat depth;          ///< 32F, the query's size, the database's units from the camera; NaN = background
+  cv::Mat back_depth;     ///< the same of the back; empty unless asked for
+  cv::Mat mask;           ///< 8U, 255 = foreground
+  render::Camera camera;  ///< in which the query shows what the depth says, in the database's frame; orthographic
 
-  View view;                       ///< estimated: the mean of the angles in use, weighted by their patches
-  std::optional<Light> light;      ///< in which the examples were rendered; nothing where they are stored
-  double scale = 1, rotation = 0;  ///< of the query to fit the examples; degrees anticlockwise
-  std::vector<UsedExample> used;   ///< every example that was in use
-  cv::Mat example;                 ///< 32S, the query's size: index into used; -1 = background
-  cv::Mat distance;                ///< 32F, the query's size: of each patch, in standard deviations
+  render::View view;                     ///< estimated: the mean of the angles in use, weighted by their patches
+  std::optional<examples::Light> light;  ///< in which the examples were rendered; nothing where they are stored
+  double scale = 1, rotation = 0;        ///< of the query to fit the examples; degrees anticlockwise
+  std::vector<UsedExample> used;         ///< every example that was in use
+  cv::Mat example;                       ///< 32S, the query's size: index into used; -1 = background
+  cv::Mat distance;                      ///< 32F, the query's size: of each patch, in standard deviations
   std::vector<std::vector<double>> plausibility;  ///< a level, coarse to fine, and iteration: mean log of eq. 3
   double strangeness = 1;  ///< mean patch distance over that of the strangest of a few members of the class
   bool trusted = true;     ///< false: the query is unlike the class
@@ -66,7 +66,7 @@ struct DepthResult {
 /// depth shall look like one of the examples.
 /// @throws UserError  an image, mask or weight that cannot be used, or too
 ///                    little of the query is foreground
-DepthResult reconstruct_depth(const DepthQuery& query, ExampleSource& source, const DepthOptions& options,
+DepthResult reconstruct_depth(const DepthQuery& query, examples::ExampleSource& source, const DepthOptions& options,
                               Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::depth

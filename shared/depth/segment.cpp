@@ -10,7 +10,7 @@
 #include "parts/depth/view_search.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::depth {
 namespace {
 
 constexpr int longest = 256;  ///< pixels at which colours are cut
@@ -57,7 +57,7 @@ struct Template {
   cv::Mat mask;
 };
 
-Template make_template(const PatchImage& example, double longest_side) {
+Template make_template(const synthesis::PatchImage& example, double longest_side) {
   cv::Mat points;
   cv::findNonZero(example.mask, points);
   const cv::Rect box = cv::boundingRect(points);
@@ -67,7 +67,7 @@ Template make_template(const PatchImage& example, double longest_side) {
   Template t;
   cv::Mat grey, core;
   cv::resize(example.mask(box), t.mask, size, 0, 0, cv::INTER_LINEAR);
-  cv::resize(extend(example.planes[0], example.mask)(box), grey, size, 0, 0, cv::INTER_LINEAR);
+  cv::resize(synthesis::extend(example.planes[0], example.mask)(box), grey, size, 0, 0, cv::INTER_LINEAR);
   t.mask = t.mask > 127;
   cv::erode(t.mask, core, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
   for (int y = 0; y < size.height; ++y)
@@ -143,28 +143,29 @@ cv::Mat synthesized(const DepthQuery& query, const Placement& placement, Gallery
                     const DepthOptions& options) {
   const cv::Size frame = gallery.image_size();
   const cv::Mat all(frame, CV_8U, cv::Scalar(255));
-  const PatchImage look = place(query, placement, frame);
+  const synthesis::PatchImage look = place(query, placement, frame);
   DepthQuery whole = query;
   whole.mask = cv::Mat(query.color.size(), CV_8U, cv::Scalar(255));
   cv::Mat guess;
   look.mask.convertTo(guess, CV_32F, 1 / 255.);
-  PatchImage q = thumbnail({{place(whole, placement, frame).planes[0]}, all}, Gallery::thumbnail_size);
+  synthesis::PatchImage q = thumbnail({{place(whole, placement, frame).planes[0]}, all}, Gallery::thumbnail_size);
   q.planes.push_back(thumbnail({{guess}, all}, Gallery::thumbnail_size).planes[0]);
-  const PatchImage small_look = thumbnail(look, Gallery::thumbnail_size);
+  const synthesis::PatchImage small_look = thumbnail(look, Gallery::thumbnail_size);
 
   std::vector<std::pair<double, int>> order;
   for (int k = 0; k < gallery.size(); ++k)
     order.push_back({image_difference(small_look, gallery.small(k, options.views[0])), k});
   std::sort(order.begin(), order.end());
-  std::vector<PatchImage> examples;
+  std::vector<synthesis::PatchImage> examples;
   for (int i = 0; i < std::min<int>(options.examples, int(order.size())); ++i) {
-    const PatchImage& e = gallery.small(order[i].second, options.views[0]);
+    const synthesis::PatchImage& e = gallery.small(order[i].second, options.views[0]);
     cv::Mat inside;
     e.mask.convertTo(inside, CV_32F, 1 / 255.);
-    examples.push_back({{extend(e.planes[0], e.mask), inside, inside, extend(e.planes[1], e.mask)},
-                        cv::Mat(e.mask.size(), CV_8U, cv::Scalar(255))});
+    examples.push_back(
+        {{synthesis::extend(e.planes[0], e.mask), inside, inside, synthesis::extend(e.planes[1], e.mask)},
+         cv::Mat(e.mask.size(), CV_8U, cv::Scalar(255))});
   }
-  SynthesisOptions o = synthesis_options(options);
+  synthesis::SynthesisOptions o = synthesis_options(options);
   o.channels = {{0, options.intensity, false, true},
                 {1, 1, false, false},
                 {2, 1, false, false},
@@ -174,7 +175,7 @@ cv::Mat synthesized(const DepthQuery& query, const Placement& placement, Gallery
   o.longest_coarsest = 0;
   o.silhouette = 0;
   Progress quiet;
-  cv::Mat small = synthesize(q, examples, o, {}, quiet).planes[0], full;
+  cv::Mat small = synthesis::synthesize(q, examples, o, {}, quiet).planes[0], full;
   cv::resize(small, full, frame, 0, 0, cv::INTER_LINEAR);
   return full;
 }
@@ -260,4 +261,4 @@ cv::Mat segment(const DepthQuery& query, Gallery& gallery, const DepthOptions& o
   return result > 127;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -4,7 +4,7 @@
 #include "parts/depth/gallery.h"
 #include "parts/depth/reconstruct_depth.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// The foreground of an image whose border is background of one colour, give or
 /// take little; nothing where the border has many colours.
@@ -19,4 +19,4 @@ cv::Mat plain_background_mask(const cv::Mat& color);
 /// @throws UserError  nothing like an object was found
 cv::Mat segment(const DepthQuery& query, Gallery& gallery, const DepthOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::depth

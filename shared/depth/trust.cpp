@@ -5,27 +5,28 @@
 
 #include "parts/depth/view_search.h"
 
-namespace parts {
+namespace parts::depth {
 namespace {
 
-double mean_distance(PatchImage query, const std::vector<PatchImage>& examples, const DepthOptions& options) {
+double mean_distance(synthesis::PatchImage query, const std::vector<synthesis::PatchImage>& examples,
+                     const DepthOptions& options) {
   query.planes = {query.planes[0], cv::Mat()};
-  SynthesisOptions o = synthesis_options(options);
+  synthesis::SynthesisOptions o = synthesis_options(options);
   o.patch_sizes = {o.patch_sizes.front()};
   o.longest_coarsest = 0;
   o.max_iterations = 1;
   Progress quiet;
-  return cv::mean(synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
+  return cv::mean(synthesis::synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
 }
 
 }  // namespace
 
-double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOptions& options) {
-  std::vector<PatchImage> members;
+double strangeness(const synthesis::PatchImage& small, const ExampleSet& set, const DepthOptions& options) {
+  std::vector<synthesis::PatchImage> members;
   std::vector<int> objects;
   for (size_t k = 0; k < set.size() && members.size() < 12; ++k) {
     if (std::count(objects.begin(), objects.end(), set[k].object)) continue;
-    PatchImage e = set.gallery().small(set[k].object, set[k].view);
+    synthesis::PatchImage e = set.gallery().small(set[k].object, set[k].view);
     e.planes.resize(2);
     members.push_back(e);
     objects.push_back(set[k].object);
@@ -35,11 +36,11 @@ double strangeness(const PatchImage& small, const ExampleSet& set, const DepthOp
   const int asked = std::min(6, int(members.size()));
   for (int i = 0; i < asked; ++i) {
     const size_t k = i * members.size() / asked;
-    std::vector<PatchImage> rest = members;
+    std::vector<synthesis::PatchImage> rest = members;
     rest.erase(rest.begin() + long(k));
     strangest = std::max(strangest, mean_distance(members[k], rest, options));
   }
   return strangest > 0 ? mean_distance(small, members, options) / strangest : 1;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts {
+namespace parts::depth {
 
-SynthesisOptions synthesis_options(const DepthOptions& options) {
-  SynthesisOptions o;
+synthesis::SynthesisOptions synthesis_options(const DepthOptions& options) {
+  synthesis::SynthesisOptions o;
   o.channels = {
       {0, options.intensity, false, true}, {0, options.high_frequency, true, true}, {1, options.depth, false, false}};
   o.synthesized = {1};
@@ -28,37 +28,39 @@ struct Spacing {
 };
 constexpr Spacing rounds[] = {{20, 15, 2, 2, 3}, {10, 10, 1, 1, 6}, {5, 5, 1, 1, 6}};
 
-bool known(const std::vector<View>& list, const View& v) {
-  return std::any_of(list.begin(), list.end(), [&](const View& w) { return angle_between(v, w) < 1; });
+bool known(const std::vector<render::View>& list, const render::View& v) {
+  return std::any_of(list.begin(), list.end(),
+                     [&](const render::View& w) { return examples::angle_between(v, w) < 1; });
 }
 
 // The patches that each view's examples give.
-std::vector<double> compete(const PatchImage& query, Gallery& gallery, const std::vector<View>& views, int objects,
-                            const DepthOptions& options) {
-  std::vector<PatchImage> examples;
+std::vector<double> compete(const synthesis::PatchImage& query, Gallery& gallery,
+                            const std::vector<render::View>& views, int objects, const DepthOptions& options) {
+  std::vector<synthesis::PatchImage> examples;
   std::vector<int> of;
   objects = std::min(objects, gallery.size());
   for (size_t v = 0; v < views.size(); ++v)
     for (int i = 0; i < objects; ++i) {
-      PatchImage e = gallery.small(i * gallery.size() / objects, views[v]);
+      synthesis::PatchImage e = gallery.small(i * gallery.size() / objects, views[v]);
       e.planes.resize(2);
       examples.push_back(std::move(e));
       of.push_back(int(v));
     }
-  SynthesisOptions o = synthesis_options(options);
+  synthesis::SynthesisOptions o = synthesis_options(options);
   o.patch_sizes = {o.patch_sizes.front()};
   o.longest_coarsest = 0;
   o.max_iterations = std::min(3, options.max_iterations);
   Progress quiet;
-  const SynthesisResult r = synthesize(query, examples, o, {}, quiet);
+  const synthesis::SynthesisResult r = synthesis::synthesize(query, examples, o, {}, quiet);
   std::vector<double> used(views.size(), 0);
   for (size_t e = 0; e < examples.size(); ++e) used[of[e]] += double(r.used[e]);
   return used;
 }
 
 // The mean of the angles around the most used one, weighted by their patches.
-View mean_view(const std::vector<View>& views, const std::vector<double>& used, const Spacing& spacing) {
-  const auto nearness = [&](const View& a, const View& b) {
+render::View mean_view(const std::vector<render::View>& views, const std::vector<double>& used,
+                       const Spacing& spacing) {
+  const auto nearness = [&](const render::View& a, const render::View& b) {
     const double yaw = (a.yaw - b.yaw) / spacing.yaw, pitch = (a.pitch - b.pitch) / spacing.pitch;
     return yaw * yaw + pitch * pitch;
   };
@@ -75,28 +77,29 @@ View mean_view(const std::vector<View>& views, const std::vector<double>& used, 
     const double w = used[v] * used[v];  // squared, or views far off would drag the mean to the middle
     total += w, yaw += w * views[v].yaw, pitch += w * views[v].pitch;
   }
-  return total > 0 ? View{yaw / total, pitch / total} : views[best];
+  return total > 0 ? render::View{yaw / total, pitch / total} : views[best];
 }
 
 }  // namespace
 
-View find_view(const PatchImage& query, Gallery& gallery, const DepthOptions& options, Progress& progress) {
+render::View find_view(const synthesis::PatchImage& query, Gallery& gallery, const DepthOptions& options,
+                       Progress& progress) {
   if (!gallery.has_any_view()) {
-    const std::vector<View>& views = gallery.stored_views();
+    const std::vector<render::View>& views = gallery.stored_views();
     if (views.size() == 1) return views.front();
     progress.at(0.3);
     return mean_view(views, compete(query, gallery, views, 6, options), rounds[0]);
   }
-  std::vector<View> centers = options.views;
-  View view = centers.front();
+  std::vector<render::View> centers = options.views;
+  render::View view = centers.front();
   double done = 0;
   for (const Spacing& s : rounds) {
     progress.at(done / std::size(rounds));
-    std::vector<View> views;
-    for (const View& c : centers)
+    std::vector<render::View> views;
+    for (const render::View& c : centers)
       for (int i = -s.yaws; i <= s.yaws; ++i)
         for (int j = -s.pitches; j <= s.pitches; ++j) {
-          const View v{c.yaw + i * s.yaw, std::clamp(c.pitch + j * s.pitch, -89., 89.)};
+          const render::View v{c.yaw + i * s.yaw, std::clamp(c.pitch + j * s.pitch, -89., 89.)};
           if (!known(views, v)) views.push_back(v);
         }
     view = mean_view(views, compete(query, gallery, views, s.objects, options), s);
@@ -106,4 +109,4 @@ View find_view(const PatchImage& query, Gallery& gallery, const DepthOptions& op
   return view;
 }
 
-}  // namespace parts
+}  // namespace parts::depth

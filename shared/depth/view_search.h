@@ -4,16 +4,17 @@
 #include "parts/depth/gallery.h"
 #include "parts/depth/reconstruct_depth.h"
 
-namespace parts {
+namespace parts::depth {
 
 /// The optimisation's options for {intensity, depth}.
-SynthesisOptions synthesis_options(const DepthOptions& options);
+synthesis::SynthesisOptions synthesis_options(const DepthOptions& options);
 
 /// From where the query is seen. Examples from a few views compete for its
 /// patches on a small scale; the mean of the angles, weighted by the patches that
 /// they gave, becomes the centre of the next, narrower round (thesis 4.1.3).
 /// Where the database stores views, they compete.
 /// @param query  small: gallery.small's scale
-View find_view(const PatchImage& query, Gallery& gallery, const DepthOptions& options, Progress& progress);
+render::View find_view(const synthesis::PatchImage& query, Gallery& gallery, const DepthOptions& options,
+                       Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::depth

@@ -15,7 +15,7 @@
 #include "parts/render/depth_mesh.h"
 #include "parts/render/mlp_camera.h"
 
-namespace parts {
+namespace parts::examples {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,7 +70,7 @@ class Draft {
   }
 
   /// Puts all in place; the files of the database that was there before go.
-  void commit(const MlpProject& project) {
+  void commit(const io::MlpProject& project) {
     std::set<fs::path> old = files_of_old_database();
     std::error_code error;
     fs::create_directories(folder_, error);
@@ -80,7 +80,7 @@ class Draft {
     }
     if (error)
       throw UserError("The folder \"" + folder_.string() + "\" cannot be written; check it and the space left.");
-    write_mlp(project, output_.string());
+    io::write_mlp(project, output_.string());
     for (const fs::path& file : old) fs::remove(file, error);
   }
 
@@ -93,10 +93,10 @@ class Draft {
       const auto add = [&](const fs::path& file) {
         if (file.parent_path() == folder_.lexically_normal()) files.insert(file);
       };
-      const MlpProject old = read_mlp(output_.string());
-      for (const MlpMesh& mesh : old.meshes) add(mesh.file);
-      for (const MlpRaster& raster : old.rasters)
-        for (const MlpPlane& plane : raster.planes) add(plane.file);
+      const io::MlpProject old = io::read_mlp(output_.string());
+      for (const io::MlpMesh& mesh : old.meshes) add(mesh.file);
+      for (const io::MlpRaster& raster : old.rasters)
+        for (const io::MlpPlane& plane : raster.planes) add(plane.file);
     } catch (const UserError&) {  // it could not be read: nothing is known to be its
     }
     return files;
@@ -117,9 +117,9 @@ void check_output(const std::string& output, const std::string& models) {
   if (fs::equivalent(path, models, error)) throw UserError(project + "is the model database; give another name.");
   bool mappings = false;
   try {
-    const MlpProject old = read_mlp(output);
+    const io::MlpProject old = io::read_mlp(output);
     mappings = std::any_of(old.rasters.begin(), old.rasters.end(),
-                           [](const MlpRaster& r) { return !r.file_of(plane::kDepth).empty(); });
+                           [](const io::MlpRaster& r) { return !r.file_of(io::plane::kDepth).empty(); });
   } catch (const UserError&) {
   }
   if (!mappings) throw UserError(project + "exists and is no mapping database; give another name, or remove it.");
@@ -133,34 +133,34 @@ void check_space(double bytes, double free) {
 }
 
 /// Stores the planes of an example and lists them as a raster.
-MlpRaster store(const Example& e, const std::string& stem, Draft& draft, double& bytes) {
-  MlpRaster raster;
+io::MlpRaster store(const Example& e, const std::string& stem, Draft& draft, double& bytes) {
+  io::MlpRaster raster;
   raster.label = e.object + " " + shown(e.view.yaw) + "," + shown(e.view.pitch);
-  raster.camera = to_mlp(e.camera, cv::mean(e.depth, e.mask)[0]);
+  raster.camera = render::to_mlp(e.camera, cv::mean(e.depth, e.mask)[0]);
   const auto add = [&](int semantic, const std::string& name, const cv::Mat& raster_data, bool depth) {
     const std::string file = draft.now(name);
     if (depth)
-      write_depth(raster_data, file);
+      io::write_depth(raster_data, file);
     else
-      write_image(raster_data, file);
+      io::write_image(raster_data, file);
     std::error_code error;
     bytes += double(fs::file_size(file, error));
     raster.planes.push_back({semantic, draft.later(name)});
   };
-  add(plane::kColor, stem + ".png", with_alpha(e.image, e.mask), false);  // first: MeshLab shows this one
-  add(plane::kMask, stem + "_mask.png", e.mask, false);
-  add(plane::kDepth, stem + "_depth.tif", e.depth, true);
-  if (!e.back_depth.empty()) add(plane::kBackDepth, stem + "_back.tif", e.back_depth, true);
+  add(io::plane::kColor, stem + ".png", io::with_alpha(e.image, e.mask), false);  // first: MeshLab shows this one
+  add(io::plane::kMask, stem + "_mask.png", e.mask, false);
+  add(io::plane::kDepth, stem + "_depth.tif", e.depth, true);
+  if (!e.back_depth.empty()) add(io::plane::kBackDepth, stem + "_back.tif", e.back_depth, true);
   return raster;
 }
 
 /// What the first example shows, as a mesh: MeshLab lists no rasters of a project without meshes.
-void add_surface(const Example& e, const std::string& stem, Draft& draft, MlpProject& project) {
+void add_surface(const Example& e, const std::string& stem, Draft& draft, io::MlpProject& project) {
   try {
     Progress silent;
-    DepthMesh surface = depth_to_mesh(e.depth, {}, e.camera, {}, silent);
+    render::DepthMesh surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
     surface.mesh.textures = {draft.now(stem + ".png")};
-    write_mesh(surface.mesh, draft.now(stem + "_surface.ply"));
+    io::write_mesh(surface.mesh, draft.now(stem + "_surface.ply"));
     project.meshes.push_back({project.rasters.back().label, draft.later(stem + "_surface.ply")});
   } catch (const UserError&) {  // too small to be a surface
   }
@@ -168,10 +168,10 @@ void add_surface(const Example& e, const std::string& stem, Draft& draft, MlpPro
 
 }  // namespace
 
-MappingsReport build_mappings(const ModelDatabase& database, const std::vector<View>& views, const std::string& output,
-                              const ExampleOptions& options, Progress& progress) {
+MappingsReport build_mappings(const io::ModelDatabase& database, const std::vector<render::View>& views,
+                              const std::string& output, const ExampleOptions& options, Progress& progress) {
   check_output(output, database.path());
-  for (const View& view : views) view_rotation(view, options.up, options.front);
+  for (const render::View& view : views) render::view_rotation(view, options.up, options.front);
   progress.stage("Reading the models", 0, 30);
   ClassModels models(database, views, options, progress);
   Draft draft(fs::absolute(output));
@@ -179,7 +179,7 @@ MappingsReport build_mappings(const ModelDatabase& database, const std::vector<V
 
   progress.stage("Rendering examples", 30, 98);
   MappingsReport report;
-  MlpProject project;
+  io::MlpProject project;
   double bytes = 0;
   for (int m = 0; m < models.size(); ++m) {
     const int before = report.examples;
@@ -203,14 +203,14 @@ MappingsReport build_mappings(const ModelDatabase& database, const std::vector<V
   if (project.rasters.empty()) throw UserError("Nothing is seen of any model; choose larger images or other views.");
 
   progress.stage("Writing the database", 98, 100);
-  ClassPreset preset = read_class_preset(database.path());
+  io::ClassPreset preset = io::read_class_preset(database.path());
   preset.up = options.up;
   preset.front = options.front;
   draft.commit(project);
-  write_class_preset(preset, output);
+  io::write_class_preset(preset, output);
   report.megabytes = bytes / 1e6;
   report.folder = draft.folder().string();
   return report;
 }
 
-}  // namespace parts
+}  // namespace parts::examples

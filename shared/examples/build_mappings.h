@@ -4,7 +4,7 @@
 #include "parts/examples/render_example.h"
 #include "parts/io/model_database.h"
 
-namespace parts {
+namespace parts::examples {
 
 struct MappingsReport {
   int objects = 0, examples = 0;
@@ -22,7 +22,7 @@ struct MappingsReport {
 /// @throws UserError  no model can be read, the output cannot be written, would
 ///                    replace a project that is no mapping database, or the disk
 ///                    or memory is too small
-MappingsReport build_mappings(const ModelDatabase& models, const std::vector<View>& views, const std::string& output,
-                              const ExampleOptions& options, Progress& progress);
+MappingsReport build_mappings(const io::ModelDatabase& models, const std::vector<render::View>& views,
+                              const std::string& output, const ExampleOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::examples

@@ -8,7 +8,7 @@
 #include "parts/base/error.h"
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::examples {
 namespace {
 
 constexpr double kBound = 256e6;    // bytes of models that are kept
@@ -25,7 +25,7 @@ double bytes_of(const ClassModel& model) {
 }
 
 /// Drops what no example is large enough to show.
-void drop_fine_levels(Textures& textures, int pixels) {
+void drop_fine_levels(render::Textures& textures, int pixels) {
   for (auto& levels : textures.images) {
     std::size_t first = 0;
     while (first + 1 < levels.size() &&
@@ -43,8 +43,8 @@ void check_options(const ExampleOptions& options) {
 
 }  // namespace
 
-ClassModels::ClassModels(const ModelDatabase& database, const std::vector<View>& views, const ExampleOptions& options,
-                         Progress& progress)
+ClassModels::ClassModels(const io::ModelDatabase& database, const std::vector<render::View>& views,
+                         const ExampleOptions& options, Progress& progress)
     : database_(database), options_(options) {
   check_options(options);
   const std::string first_flaw = measure(views, progress);
@@ -54,9 +54,9 @@ ClassModels::ClassModels(const ModelDatabase& database, const std::vector<View>&
 }
 
 /// Reads all models, a few at a time, and measures them. @return what is wrong with the first that is left out
-std::string ClassModels::measure(const std::vector<View>& views, Progress& progress) {
+std::string ClassModels::measure(const std::vector<render::View>& views, Progress& progress) {
   std::vector<Eigen::Matrix3d> rotations;
-  for (const View& view : views) rotations.push_back(view_rotation(view, options_.up, options_.front));
+  for (const render::View& view : views) rotations.push_back(render::view_rotation(view, options_.up, options_.front));
   const int batch = thread_count(options_.threads);
   struct Read {
     std::optional<Mesh> mesh;
@@ -158,7 +158,7 @@ const ClassModel& ClassModels::get(int i) {
     recent_.splice(recent_.begin(), recent_, std::find(recent_.begin(), recent_.end(), i));
   ClassModel& model = *e.loaded;
   if (model.textures.images.size() != model.mesh.textures.size()) {  // its images are read when first seen
-    model.textures = load_textures(model.mesh);
+    model.textures = render::load_textures(model.mesh);
     drop_fine_levels(model.textures, std::max(options_.width, options_.height));
     bytes_ += bytes_of(model) - e.bytes;
     e.bytes = bytes_of(model);
@@ -167,4 +167,4 @@ const ClassModel& ClassModels::get(int i) {
   return model;
 }
 
-}  // namespace parts
+}  // namespace parts::examples

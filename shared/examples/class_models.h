@@ -8,7 +8,7 @@
 #include "parts/examples/render_example.h"
 #include "parts/io/model_database.h"
 
-namespace parts {
+namespace parts::examples {
 
 /// The usable models of a database in the frame of their class, in memory as
 /// far as a bound allows and read again beyond that.
@@ -16,7 +16,7 @@ class ClassModels {
  public:
   /// Reads every model once. @param views  in which every model must fit
   /// @throws UserError  none can be read
-  ClassModels(const ModelDatabase& database, const std::vector<View>& views, const ExampleOptions& options,
+  ClassModels(const io::ModelDatabase& database, const std::vector<render::View>& views, const ExampleOptions& options,
               Progress& progress);
 
   int size() const { return int(entries_.size()); }
@@ -39,16 +39,16 @@ class ClassModels {
     std::unique_ptr<ClassModel> loaded;
     double bytes = 0;
   };
-  std::string measure(const std::vector<View>& views, Progress& progress);
+  std::string measure(const std::vector<render::View>& views, Progress& progress);
   void settle_frame(Progress& progress);
   void keep(int i, Mesh mesh);
   void forget_beyond_bound(int but);
 
-  ModelDatabase database_;
+  io::ModelDatabase database_;
   ExampleOptions options_;
   std::vector<Entry> entries_;
   std::list<int> recent_;  ///< loaded ones, the last used first
   double frame_ = 1, median_ = 1, bytes_ = 0;
 };
 
-}  // namespace parts
+}  // namespace parts::examples

@@ -9,7 +9,7 @@
 #include "parts/io/class_preset.h"
 #include "parts/render/camera.h"
 
-namespace parts {
+namespace parts::examples {
 
 /// One light far away, and what comes from everywhere.
 struct Light {
@@ -21,8 +21,8 @@ struct Light {
 /// camera sees of one object of the class. Rasters of one size.
 struct Example {
   std::string object;  ///< its label
-  View view;
-  Camera camera;
+  render::View view;
+  render::Camera camera;
   cv::Mat image;       ///< 8UC3, BGR
   cv::Mat depth;       ///< 32F, world units from the camera; NaN = background
   cv::Mat back_depth;  ///< the same of the farthest surface; empty where the database has none
@@ -42,11 +42,11 @@ class ExampleSource {
   virtual const std::string& name(int object) const = 0;
   virtual cv::Size image_size() const = 0;
   /// The views that are stored of an object; none: it can be rendered from any.
-  virtual std::vector<View> views(int object) const = 0;
+  virtual std::vector<render::View> views(int object) const = 0;
   /// The example of that view, or of the stored view nearest to it. Not for
   /// several threads at once.
   /// @throws UserError  its files or model cannot be read
-  virtual Example get(int object, const View& view) = 0;
+  virtual Example get(int object, const render::View& view) = 0;
   /// In what light examples are rendered; nothing where they are stored as they are.
   virtual std::optional<Light> light() const { return {}; }
   /// From now on.
@@ -54,10 +54,10 @@ class ExampleSource {
   /// The files that it is made of, which no output may replace.
   virtual std::vector<std::string> files() const { return {}; }
   /// What the database says about its class.
-  virtual const ClassPreset& preset() const = 0;
+  virtual const io::ClassPreset& preset() const = 0;
 };
 
 /// The angle between two directions of view, degrees.
-double angle_between(const View& a, const View& b);
+double angle_between(const render::View& a, const render::View& b);
 
-}  // namespace parts
+}  // namespace parts::examples

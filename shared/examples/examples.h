@@ -7,7 +7,7 @@
 #include "parts/examples/render_example.h"
 #include "parts/io/model_database.h"
 
-namespace parts {
+namespace parts::examples {
 
 /// Renders examples of the models of a database as they are asked for.
 ///
@@ -19,8 +19,9 @@ namespace parts {
 /// @param views    from which to frame
 /// @param options  up and front count where the class's preset does not say
 /// @throws UserError  no model can be read; more memory than there is
-std::unique_ptr<ExampleSource> render_examples(const ModelDatabase& database, const std::vector<View>& views,
-                                               const ExampleOptions& options, Progress& progress);
+std::unique_ptr<ExampleSource> render_examples(const io::ModelDatabase& database,
+                                               const std::vector<render::View>& views, const ExampleOptions& options,
+                                               Progress& progress);
 
 /// Opens a mapping database: a project whose rasters have an RGBA plane and a
 /// DEPTH_F plane (and MASK_UB, EXTRA00_F where there are such) and a camera.
@@ -32,7 +33,7 @@ std::unique_ptr<ExampleSource> open_mapping_database(const std::string& path, Pr
 
 /// A project with a raster that has a depth plane is a mapping database; any
 /// other project, and any folder, a database of models to render.
-std::unique_ptr<ExampleSource> open_examples(const std::string& path, const std::vector<View>& views,
+std::unique_ptr<ExampleSource> open_examples(const std::string& path, const std::vector<render::View>& views,
                                              const ExampleOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::examples

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts {
+namespace parts::examples {
 
 double Example::pixels_per_unit() const {
   if (camera.focal <= 0) return camera.scale;
@@ -12,9 +12,9 @@ double Example::pixels_per_unit() const {
   return mean[0] > 0 ? camera.focal / mean[0] : 1;
 }
 
-double angle_between(const View& a, const View& b) {
+double angle_between(const render::View& a, const render::View& b) {
   constexpr double degree = EIGEN_PI / 180;
-  const auto direction = [](const View& v) {
+  const auto direction = [](const render::View& v) {
     const double yaw = v.yaw * degree, pitch = v.pitch * degree;
     return Vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
   };
@@ -29,23 +29,23 @@ Eigen::Vector2d extent(const Mesh& mesh, const Vec3& center, const Eigen::Matrix
   return most;
 }
 
-Example render_example(const ClassModel& model, const View& view, double frame, const ExampleOptions& options) {
+Example render_example(const ClassModel& model, const render::View& view, double frame, const ExampleOptions& options) {
   Example out;
   out.object = model.name;
   out.view = view;
-  Camera& camera = out.camera;
-  camera.rotation = view_rotation(view, options.up, options.front);
+  render::Camera& camera = out.camera;
+  camera.rotation = render::view_rotation(view, options.up, options.front);
   camera.width = options.width;
   camera.height = options.height;
   camera.center = {options.width / 2., options.height / 2.};
   camera.scale = frame / model.size;
   camera.eye = model.center + model.size * camera.rotation.row(2).transpose();  // in front of all of it
 
-  RenderOptions look;
+  render::RenderOptions look;
   look.light = options.light;
   look.ambient = options.ambient;
   look.threads = options.threads;
-  Rendering seen = render(model.mesh, model.textures, camera, look);
+  render::Rendering seen = render::render(model.mesh, model.textures, camera, look);
   out.image = seen.image;
   out.depth = seen.depth;
   out.mask = seen.mask;
@@ -53,4 +53,4 @@ Example render_example(const ClassModel& model, const View& view, double frame, 
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::examples

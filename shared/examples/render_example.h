@@ -4,7 +4,7 @@
 #include "parts/examples/example.h"
 #include "parts/render/rasterize.h"
 
-namespace parts {
+namespace parts::examples {
 
 /// How the models of a class become examples.
 struct ExampleOptions {
@@ -21,7 +21,7 @@ struct ExampleOptions {
 struct ClassModel {
   std::string name;
   Mesh mesh;
-  Textures textures;
+  render::Textures textures;
   Vec3 center = Vec3::Zero();  ///< of its box: the image's centre
   double size = 1;             ///< world units that are drawn as large as those of other models
 };
@@ -32,6 +32,6 @@ Eigen::Vector2d extent(const Mesh& mesh, const Vec3& center, const Eigen::Matrix
 
 /// Sees a model from a view, orthographically, its centre in the image's centre.
 /// @param frame  pixels that model.size covers
-Example render_example(const ClassModel& model, const View& view, double frame, const ExampleOptions& options);
+Example render_example(const ClassModel& model, const render::View& view, double frame, const ExampleOptions& options);
 
-}  // namespace parts
+}  // namespace parts::examples

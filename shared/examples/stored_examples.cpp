@@ -12,7 +12,7 @@
 #include "parts/io/raster_io.h"
 #include "parts/render/mlp_camera.h"
 
-namespace parts {
+namespace parts::examples {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,11 +24,11 @@ std::string pixels(const cv::Size& size) {
 }
 
 /// The view that ends a label, "name 30,-15", is cut off and returned.
-std::optional<View> cut_view(std::string& label) {
+std::optional<render::View> cut_view(std::string& label) {
   const std::size_t blank = label.find_last_of(' ');
   if (blank == std::string::npos || label.find(',', blank) == std::string::npos) return {};
   try {
-    const std::vector<View> views = parse_views(label.substr(blank + 1));
+    const std::vector<render::View> views = render::parse_views(label.substr(blank + 1));
     label.resize(blank);
     return views.at(0);
   } catch (const UserError&) {
@@ -37,9 +37,9 @@ std::optional<View> cut_view(std::string& label) {
 }
 
 /// From where a camera looks at models that stand like those of the class.
-View view_of(const Camera& camera, const ClassPreset& preset) {
+render::View view_of(const render::Camera& camera, const io::ClassPreset& preset) {
   const Eigen::Matrix3d frame =
-      view_rotation({}, preset.up.value_or(Vec3(0, 1, 0)), preset.front.value_or(Vec3(0, 0, 1)));
+      render::view_rotation({}, preset.up.value_or(Vec3(0, 1, 0)), preset.front.value_or(Vec3(0, 0, 1)));
   const Vec3 q = frame * camera.rotation.row(2).transpose();
   constexpr double degree = EIGEN_PI / 180;
   return {std::atan2(q.x(), q.z()) / degree, std::atan2(q.y(), std::hypot(q.x(), q.z())) / degree};
@@ -47,16 +47,16 @@ View view_of(const Camera& camera, const ClassPreset& preset) {
 
 class StoredExamples : public ExampleSource {
  public:
-  StoredExamples(const std::string& path, Progress& progress) : path_(path), preset_(read_class_preset(path)) {
+  StoredExamples(const std::string& path, Progress& progress) : path_(path), preset_(io::read_class_preset(path)) {
     std::map<std::string, int> objects;
-    for (const MlpRaster& raster : read_mlp(path).rasters) {
-      if (raster.file_of(plane::kDepth).empty() || raster.file_of(plane::kColor).empty()) {
+    for (const io::MlpRaster& raster : io::read_mlp(path).rasters) {
+      if (raster.file_of(io::plane::kDepth).empty() || raster.file_of(io::plane::kColor).empty()) {
         progress.log("skipped: " + raster.label + " (no depth plane)");
         continue;
       }
-      Shot shot{raster, from_mlp(raster.camera, raster.label), {}};
+      Shot shot{raster, render::from_mlp(raster.camera, raster.label), {}};
       std::string name = raster.label;
-      const std::optional<View> view = cut_view(name);
+      const std::optional<render::View> view = cut_view(name);
       shot.view = view ? *view : view_of(shot.camera, preset_);
       check_files(raster);
       const auto [place, is_new] = objects.emplace(name, int(names_.size()));
@@ -71,8 +71,8 @@ class StoredExamples : public ExampleSource {
   int size() const override { return int(names_.size()); }
   const std::string& name(int object) const override { return names_[object]; }
   cv::Size image_size() const override { return size_; }
-  std::vector<View> views(int object) const override {
-    std::vector<View> views;
+  std::vector<render::View> views(int object) const override {
+    std::vector<render::View> views;
     for (const Shot& shot : shots_[object]) views.push_back(shot.view);
     return views;
   }
@@ -80,12 +80,12 @@ class StoredExamples : public ExampleSource {
     std::vector<std::string> list;
     for (const auto& shots : shots_)
       for (const Shot& shot : shots)
-        for (const MlpPlane& plane : shot.raster.planes) list.push_back(plane.file);
+        for (const io::MlpPlane& plane : shot.raster.planes) list.push_back(plane.file);
     return list;
   }
-  const ClassPreset& preset() const override { return preset_; }
+  const io::ClassPreset& preset() const override { return preset_; }
 
-  Example get(int object, const View& view) override {
+  Example get(int object, const render::View& view) override {
     std::vector<Shot>& shots = shots_[object];
     std::size_t best = 0;
     for (std::size_t s = 1; s < shots.size(); ++s)
@@ -100,23 +100,23 @@ class StoredExamples : public ExampleSource {
 
  private:
   struct Shot {
-    MlpRaster raster;
-    Camera camera;
-    View view;
+    io::MlpRaster raster;
+    render::Camera camera;
+    render::View view;
     Example example{};  ///< once it has been read, as far as the bound allows
   };
 
   /// All files are there and, as far as their heads say, of one size.
-  void check_files(const MlpRaster& raster) {
-    for (const MlpPlane& plane : raster.planes) {
-      if (plane.semantic != plane::kColor && plane.semantic != plane::kDepth && plane.semantic != plane::kMask &&
-          plane.semantic != plane::kBackDepth)
+  void check_files(const io::MlpRaster& raster) {
+    for (const io::MlpPlane& plane : raster.planes) {
+      if (plane.semantic != io::plane::kColor && plane.semantic != io::plane::kDepth &&
+          plane.semantic != io::plane::kMask && plane.semantic != io::plane::kBackDepth)
         continue;
       std::error_code error;
       if (!fs::is_regular_file(plane.file, error))
         throw UserError("The file \"" + plane.file + "\" of the database \"" + path_ +
                         "\" is missing; put it back, or build the database again.");
-      if (const std::optional<ImageHead> head = read_image_head(plane.file))
+      if (const std::optional<io::ImageHead> head = io::read_image_head(plane.file))
         check_size(plane.file, {int(std::min(head->width, 1e9)), int(std::min(head->height, 1e9))});
     }
   }
@@ -131,22 +131,24 @@ class StoredExamples : public ExampleSource {
     Example out;
     out.object = name;
     out.view = shot.view;
-    const std::string image_file = shot.raster.file_of(plane::kColor), depth_file = shot.raster.file_of(plane::kDepth),
-                      mask_file = shot.raster.file_of(plane::kMask), back_file = shot.raster.file_of(plane::kBackDepth);
-    out.image = read_image(image_file).color;
-    out.depth = read_depth(depth_file);
+    const std::string image_file = shot.raster.file_of(io::plane::kColor),
+                      depth_file = shot.raster.file_of(io::plane::kDepth),
+                      mask_file = shot.raster.file_of(io::plane::kMask),
+                      back_file = shot.raster.file_of(io::plane::kBackDepth);
+    out.image = io::read_image(image_file).color;
+    out.depth = io::read_depth(depth_file);
     check_size(image_file, out.image.size());
     check_size(depth_file, out.depth.size());
     out.camera = scaled(shot.camera, out.depth.size());
-    out.mask = depth_mask(out.depth);
+    out.mask = io::depth_mask(out.depth);
     if (!mask_file.empty()) {
-      cv::bitwise_and(out.mask, read_mask(mask_file, out.depth.size()), out.mask);
+      cv::bitwise_and(out.mask, io::read_mask(mask_file, out.depth.size()), out.mask);
       if (cv::countNonZero(out.mask) == 0)
         throw UserError("The mask \"" + mask_file + "\" hides all depth of its raster; build the database again.");
       out.depth.setTo(std::numeric_limits<float>::quiet_NaN(), ~out.mask);
     }
     if (!back_file.empty()) {
-      out.back_depth = read_depth(back_file);
+      out.back_depth = io::read_depth(back_file);
       check_size(back_file, out.back_depth.size());
       settle_back(out);
     }
@@ -165,7 +167,7 @@ class StoredExamples : public ExampleSource {
   }
 
   /// The camera for the images' size, which may not be the viewport's.
-  static Camera scaled(Camera camera, const cv::Size& size) {
+  static render::Camera scaled(render::Camera camera, const cv::Size& size) {
     const double by = double(size.width) / camera.width;
     if (size.width == camera.width && size.height == camera.height) return camera;
     camera.center *= by;
@@ -177,7 +179,7 @@ class StoredExamples : public ExampleSource {
   }
 
   std::string path_;
-  ClassPreset preset_;
+  io::ClassPreset preset_;
   cv::Size size_;
   std::vector<std::string> names_;
   std::vector<std::vector<Shot>> shots_;  ///< of each object
@@ -190,4 +192,4 @@ std::unique_ptr<ExampleSource> open_mapping_database(const std::string& path, Pr
   return std::make_unique<StoredExamples>(path, progress);
 }
 
-}  // namespace parts
+}  // namespace parts::examples

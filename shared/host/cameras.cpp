@@ -10,8 +10,8 @@ namespace parts::host {
 
 using Scalar = Shotm::ScalarType;
 
-Shotm to_shot(const Camera& camera, double distance) {
-  const MlpCamera c = to_mlp(camera, distance);
+Shotm to_shot(const render::Camera& camera, double distance) {
+  const io::MlpCamera c = render::to_mlp(camera, distance);
   Shotm shot;
   shot.Extrinsics.SetTra(vcg::Point3<Scalar>(-c.translation.x(), -c.translation.y(), -c.translation.z()));
   vcg::Matrix44<Scalar> rotation;
@@ -28,8 +28,8 @@ Shotm to_shot(const Camera& camera, double distance) {
   return shot;
 }
 
-std::optional<Camera> to_camera(const Shotm& shot) {
-  MlpCamera c;
+std::optional<render::Camera> to_camera(const Shotm& shot) {
+  io::MlpCamera c;
   c.given = true;
   const vcg::Point3<Scalar> eye = shot.Extrinsics.Tra();
   c.translation = -Vec3(eye.X(), eye.Y(), eye.Z());
@@ -42,13 +42,13 @@ std::optional<Camera> to_camera(const Shotm& shot) {
   c.pixel_mm = {shot.Intrinsics.PixelSizeMm.X(), shot.Intrinsics.PixelSizeMm.Y()};
   c.center_px = {shot.Intrinsics.CenterPx.X(), shot.Intrinsics.CenterPx.Y()};
   try {
-    return from_mlp(c, "");
+    return render::from_mlp(c, "");
   } catch (const UserError&) {
     return {};
   }
 }
 
-void set_camera(const Camera& camera, MeshModel& layer) {
+void set_camera(const render::Camera& camera, MeshModel& layer) {
   layer.updateDataMask(MeshModel::MM_CAMERA);
   const vcg::Point3<Scalar> middle = layer.cm.bbox.Center();
   layer.cm.shot = to_shot(camera, camera.project(Vec3(middle.X(), middle.Y(), middle.Z())).z());

@@ -30,7 +30,7 @@ void add_box(const std::string& name, const std::string& label, const Box& box, 
 }
 
 void add_smoothing(const std::string& zero, std::vector<Parameter>& list) {
-  const SeamSmoothing smoothing;
+  const seam::SeamSmoothing smoothing;
   list.push_back(integer("SmoothIterations", smoothing.iterations, 0, 10000, "Smoothing steps of the seam",
                          "How often the vertices near the seam move toward the middle of their neighbours. 0 leaves "
                          "the seam as it was stitched."));
@@ -42,7 +42,7 @@ void add_smoothing(const std::string& zero, std::vector<Parameter>& list) {
                         "neighbours."));
 }
 
-SeamSmoothing smoothing_of(const Inputs& inputs) {
+seam::SeamSmoothing smoothing_of(const Inputs& inputs) {
   return {inputs.integer("SmoothIterations"), inputs.length("SmoothDistance"), inputs.number("SmoothWeight")};
 }
 
@@ -61,13 +61,13 @@ std::vector<int> parse_patch_sizes(const std::string& text) {
   return sizes;
 }
 
-double class_number(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+double class_number(const Inputs& inputs, const io::ClassPreset& preset, const char* slug, const char* name,
                     double fallback) {
   const double given = inputs.number(name);
   return std::abs(given - fallback) < 1e-6 ? preset.number(slug, name).value_or(given) : given;
 }
 
-std::string class_text(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+std::string class_text(const Inputs& inputs, const io::ClassPreset& preset, const char* slug, const char* name,
                        const std::string& fallback) {
   const std::string given = inputs.text(name);
   return given == fallback ? preset.text(slug, name).value_or(given) : given;

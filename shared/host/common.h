@@ -20,15 +20,15 @@ void add_box(const std::string& name, const std::string& label, const Box& box, 
 
 /// SmoothIterations, SmoothDistance and SmoothWeight. @param zero  what a distance of 0 means
 void add_smoothing(const std::string& zero, std::vector<Parameter>& list);
-SeamSmoothing smoothing_of(const Inputs& inputs);
+seam::SeamSmoothing smoothing_of(const Inputs& inputs);
 
 /// Sides of patches, coarse to fine. @throws UserError  text is no list of whole numbers
 std::vector<int> parse_patch_sizes(const std::string& text);
 
 /// The value of a parameter; at its default, what the class says of it.
-double class_number(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+double class_number(const Inputs& inputs, const io::ClassPreset& preset, const char* slug, const char* name,
                     double fallback);
-std::string class_text(const Inputs& inputs, const ClassPreset& preset, const char* slug, const char* name,
+std::string class_text(const Inputs& inputs, const io::ClassPreset& preset, const char* slug, const char* name,
                        const std::string& fallback);
 
 /// The value of a direction; at its default, what the class says.

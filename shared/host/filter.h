@@ -34,8 +34,8 @@ class Layer {
 /// A raster layer of the host's document: a registered image.
 struct RasterLayer {
   std::string name;
-  std::string file;              ///< of its first plane, absolute
-  std::optional<Camera> camera;  ///< where it has one that can be used
+  std::string file;                      ///< of its first plane, absolute
+  std::optional<render::Camera> camera;  ///< where it has one that can be used
 };
 
 /// A parameter as users and scripts see it. Made by the functions below.
@@ -99,12 +99,12 @@ struct Outcome {
     std::string name;
     Mesh mesh;
     bool visible = true;
-    std::optional<Camera> camera = {};  ///< through which its image was seen
+    std::optional<render::Camera> camera = {};  ///< through which its image was seen
   };
   struct NewRaster {
     std::string name;
     std::string file;  ///< of the image
-    Camera camera;
+    render::Camera camera;
     double distance;  ///< of what it shows, world units; see to_mlp()
   };
   struct Placement {

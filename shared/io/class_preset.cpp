@@ -9,7 +9,7 @@
 
 #include "parts/base/error.h"
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,4 +122,4 @@ void write_class_preset(const ClassPreset& preset, const std::string& database) 
   }
 }
 
-}  // namespace parts
+}  // namespace parts::io

@@ -7,7 +7,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::io {
 
 /// What a database says about its class (thesis 4.3.1: weights are set once a
 /// class): how its models stand, and values for parameters of filters. Kept
@@ -36,4 +36,4 @@ ClassPreset read_class_preset(const std::string& database);
 /// @throws UserError  the file cannot be written
 void write_class_preset(const ClassPreset& preset, const std::string& database);
 
-}  // namespace parts
+}  // namespace parts::io

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 /// Numbers of a byte order, anywhere in a file; 0 past its end.
@@ -117,4 +117,4 @@ std::optional<ImageHead> read_image_head(const std::string& path) {
   return {};
 }
 
-}  // namespace parts
+}  // namespace parts::io

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace parts {
+namespace parts::io {
 
 /// What the head of an image file says, before anything is allocated.
 struct ImageHead {
@@ -16,4 +16,4 @@ struct ImageHead {
 /// head that cannot be read.
 std::optional<ImageHead> read_image_head(const std::string& path);
 
-}  // namespace parts
+}  // namespace parts::io

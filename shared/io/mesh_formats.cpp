@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace parts::formats {
+namespace parts::io::formats {
 
 double Scanner::to_number(std::string_view word) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
@@ -109,4 +109,4 @@ void append_point(std::string& text, const Vec3& p, bool floats) {
   }
 }
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

@@ -16,7 +16,7 @@
 /// they write out of bounds, loop or assert on thirteen of the two dozen broken
 /// files of the tests, and find an .obj's materials only by changing the
 /// directory of the whole process; its .obj exporter keeps six decimals.)
-namespace parts::formats {
+namespace parts::io::formats {
 
 /// The bytes are not a mesh of that format; what() completes "The file … ".
 struct Malformed : std::runtime_error {
@@ -88,4 +88,4 @@ bool fits_floats(const Mesh& mesh);
 /// Appends x, y, z with blanks between, as floats where they fit.
 void append_point(std::string& text, const Vec3& p, bool floats);
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

@@ -9,7 +9,7 @@
 #include "parts/base/error.h"
 #include "parts/io/mesh_formats.h"
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ void write_mesh(const Mesh& mesh, const std::string& path) {
   write_file(path, text.obj);
 }
 
-}  // namespace parts
+}  // namespace parts::io

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::io {
 
 /// Reads a .ply, .obj, .off or .stl file with its colours, quality and texture
 /// coordinates. Texture file names come back as the file names
@@ -17,4 +17,4 @@ Mesh read_mesh(const std::string& path);
 /// format holds. @throws UserError  the file cannot be written
 void write_mesh(const Mesh& mesh, const std::string& path);
 
-}  // namespace parts
+}  // namespace parts::io

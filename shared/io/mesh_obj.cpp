@@ -5,7 +5,7 @@
 
 #include "parts/io/mesh_formats.h"
 
-namespace parts::formats {
+namespace parts::io::formats {
 namespace {
 
 constexpr Color kWhite{255, 255, 255, 255};
@@ -299,4 +299,4 @@ ObjText format_obj(const Mesh& mesh, const std::string& material_file) {
   return out;
 }
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

@@ -4,7 +4,7 @@
 
 #include "parts/io/mesh_formats.h"
 
-namespace parts::formats {
+namespace parts::io::formats {
 namespace {
 
 /// What the letters before OFF announce: [ST][C][N][4][n]OFF.
@@ -163,4 +163,4 @@ std::string format_off(const Mesh& mesh) {
   return text;
 }
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

@@ -5,7 +5,7 @@
 
 #include "parts/io/mesh_formats.h"
 
-namespace parts::formats {
+namespace parts::io::formats {
 namespace {
 
 enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
@@ -386,4 +386,4 @@ std::string format_ply(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

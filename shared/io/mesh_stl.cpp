@@ -4,7 +4,7 @@
 
 #include "parts/io/mesh_formats.h"
 
-namespace parts::formats {
+namespace parts::io::formats {
 namespace {
 
 constexpr std::size_t kHeader = 80, kRecord = 50;
@@ -99,4 +99,4 @@ Mesh parse_stl(std::string_view bytes) {
   return parse_binary(bytes, count);
 }
 
-}  // namespace parts::formats
+}  // namespace parts::io::formats

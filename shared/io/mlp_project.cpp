@@ -15,7 +15,7 @@
 #include "parts/base/error.h"
 #include "parts/io/mesh_formats.h"
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -293,4 +293,4 @@ void write_mlp(const MlpProject& project, const std::string& path) {
   }
 }
 
-}  // namespace parts
+}  // namespace parts::io

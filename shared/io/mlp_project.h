@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::io {
 
 /// What a plane of a raster holds, as MeshLab numbers it.
 namespace plane {
@@ -69,4 +69,4 @@ MlpProject read_mlp(const std::string& path);
 /// @throws UserError  the file cannot be written
 void write_mlp(const MlpProject& project, const std::string& path);
 
-}  // namespace parts
+}  // namespace parts::io

@@ -13,7 +13,7 @@
 #include "parts/io/mlp_project.h"
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ void use_world_space(Mesh& mesh, const Eigen::Matrix4d& matrix) {
   if (matrix == Eigen::Matrix4d::Identity()) return;
   const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
   for (Vec3& v : mesh.vertices) v = (matrix * v.homogeneous()).hnormalized();
-  if (linear.determinant() < 0) flip_orientation(mesh);
+  if (linear.determinant() < 0) mesh::flip_orientation(mesh);
   if (mesh.vertex_normal.empty()) return;
   const Eigen::Matrix3f normals =
       (linear.inverse().transpose() * (linear.determinant() < 0 ? -1.0 : 1.0)).cast<float>();
@@ -146,7 +146,7 @@ Mesh ModelDatabase::load(int model) const {
   if (!why.empty()) throw UserError("The model \"" + m.name + "\" " + why + "; repair it or take it out.");
   const bool stray =
       std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return !v.allFinite(); });
-  return stray ? take_faces(mesh, std::vector<char>(mesh.faces.size(), 1)) : mesh;
+  return stray ? mesh::take_faces(mesh, std::vector<char>(mesh.faces.size(), 1)) : mesh;
 }
 
 std::optional<Mesh> ModelDatabase::load_or_skip(int model, Progress& progress) const {
@@ -158,4 +158,4 @@ std::optional<Mesh> ModelDatabase::load_or_skip(int model, Progress& progress) c
   }
 }
 
-}  // namespace parts
+}  // namespace parts::io

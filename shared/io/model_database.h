@@ -8,7 +8,7 @@
 #include "parts/base/progress.h"
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::io {
 
 /// A database of models: the meshes of a MeshLab project (.mlp) with their
 /// matrices, or all .ply .obj .off .stl files of a folder, in natural order
@@ -48,4 +48,4 @@ class ModelDatabase {
 /// Whether a comes before b where runs of digits count as numbers.
 bool natural_less(const std::string& a, const std::string& b);
 
-}  // namespace parts
+}  // namespace parts::io

@@ -15,7 +15,7 @@
 #include "parts/base/memory.h"
 #include "parts/io/image_size.h"
 
-namespace parts {
+namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ cv::Mat depth_mask(const cv::Mat& depth) {
   return mask;
 }
 
-}  // namespace parts
+}  // namespace parts::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace parts {
+namespace parts::io {
 
 /// A photograph or picture, height x width.
 struct Image {
@@ -74,4 +74,4 @@ cv::Mat with_alpha(const cv::Mat& color, const cv::Mat& mask);
 /// The mask (8U, 0 or 255) of the pixels of a depth raster that have a depth.
 cv::Mat depth_mask(const cv::Mat& depth);
 
-}  // namespace parts
+}  // namespace parts::io

@@ -8,7 +8,7 @@
 #include "parts/mend/fit_to_rim.h"
 #include "parts/mend/shape_prior.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 /// The base in the shape of each other model it could be brought onto.
@@ -38,7 +38,7 @@ std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, 
         shapes[i] = onto.vertices;
         int hint = 0;
         for (Vec3& p : shapes[i]) {
-          const FaceHit hit = there.closest()(p, hint);
+          const spatial::FaceHit hit = there.closest()(p, hint);
           for (int k = 0; k < 3; ++k) {
             const int v = other.faces[hit.face][k];
             p += hit.barycentric[k] * (models[i].mesh.vertices[v] - models[i].fitted[v]);
@@ -116,4 +116,4 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

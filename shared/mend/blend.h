@@ -6,7 +6,7 @@
 #include "parts/base/progress.h"
 #include "parts/mend/matching.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// A model in two poses.
 struct PosedModel {
@@ -31,4 +31,4 @@ struct Blended {
 /// @throws Cancelled
 Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& target, int threads, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -6,7 +6,7 @@
 
 #include "parts/mend/smooth_field.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 /// The similarity that takes `from` nearest to the targets (Umeyama 1991, weighted).
@@ -86,4 +86,4 @@ Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& 
   return fitted;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

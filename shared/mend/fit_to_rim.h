@@ -6,7 +6,7 @@
 #include "parts/base/progress.h"
 #include "parts/mend/matching.h"
 
-namespace parts {
+namespace parts::mend {
 
 struct FitOptions {
   bool rigid = true;     ///< a similarity first, then the smooth field
@@ -34,4 +34,4 @@ struct Fitted {
 /// @throws Cancelled
 Fitted fit_to_rim(const Mesh& model, const FitTarget& target, const FitOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::mend

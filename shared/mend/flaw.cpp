@@ -10,7 +10,7 @@
 #include "parts/mesh/edges.h"
 #include "parts/spatial/closest_face.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 Vec3 center_of(const Mesh& m, int f) { return (m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3; }
@@ -51,15 +51,15 @@ class Depth {
 /// Pieces that the cut has left within what goes go too.
 void leave_no_island(const Mesh& scan, const std::vector<char>& keep, std::vector<char>& replaced) {
   DisjointSets pieces(scan.face_count());
-  const std::vector<HalfEdge> edges = sorted_half_edges(scan);
-  for_each_mesh_edge(edges, [&](auto first, auto last) {
+  const std::vector<mesh::HalfEdge> edges = mesh::sorted_half_edges(scan);
+  mesh::for_each_mesh_edge(edges, [&](auto first, auto last) {
     for (auto e = first + 1; e < last; ++e)
       if (!replaced[first->face] && !replaced[e->face]) pieces.unite(first->face, e->face);
   });
   std::vector<char> kept(scan.faces.size(), 0), cut(scan.faces.size(), 0);
   for (int f = 0; f < scan.face_count(); ++f)
     if (keep[f]) kept[pieces.find(f)] = 1;
-  for_each_mesh_edge(edges, [&](auto first, auto last) {
+  mesh::for_each_mesh_edge(edges, [&](auto first, auto last) {
     for (auto e = first + 1; e < last; ++e) {
       if (replaced[first->face] && !replaced[e->face]) cut[pieces.find(e->face)] = 1;
       if (replaced[e->face] && !replaced[first->face]) cut[pieces.find(first->face)] = 1;
@@ -142,7 +142,7 @@ FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double 
 }
 
 std::vector<char> cut_out_flaw(const Mesh& scan, const Region& region, FlawConstraints c, const Mesh& model) {
-  const ClosestFace on_model(model);
+  const spatial::ClosestFace on_model(model);
   // How far the two surfaces are apart, at the vertices of the region.
   std::vector<double> apart(scan.vertices.size(), -1), good;
   const auto fill_in = [&](int v) {
@@ -163,14 +163,14 @@ std::vector<char> cut_out_flaw(const Mesh& scan, const Region& region, FlawConst
       if (most > 6 * usual) c.flaw[f] = 1;
     }
 
-  FlowGraph graph(scan.face_count(), 2 * scan.face_count());
+  cut::FlowGraph graph(scan.face_count(), 2 * scan.face_count());
   graph.add_node(scan.face_count());
   for (int f = 0; f < scan.face_count(); ++f)
     if (c.keep[f])
-      graph.add_tweights(f, kUncuttableTerminal, 0);
+      graph.add_tweights(f, cut::kUncuttableTerminal, 0);
     else if (c.flaw[f])
-      graph.add_tweights(f, 0, kUncuttableTerminal);
-  for_each_mesh_edge(sorted_half_edges(scan), [&](auto first, auto last) {
+      graph.add_tweights(f, 0, cut::kUncuttableTerminal);
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(scan), [&](auto first, auto last) {
     for (auto e = first + 1; e < last; ++e) {
       if (c.keep[first->face] && c.keep[e->face]) continue;
       const double length = (scan.vertices[first->from] - scan.vertices[first->to]).norm();
@@ -183,10 +183,10 @@ std::vector<char> cut_out_flaw(const Mesh& scan, const Region& region, FlawConst
   graph.maxflow();
   std::vector<char> replaced(scan.faces.size());
   for (int f = 0; f < scan.face_count(); ++f)
-    replaced[f] = !c.keep[f] && (c.flaw[f] || graph.what_segment(f, FlowGraph::SOURCE) == FlowGraph::SINK);
+    replaced[f] = !c.keep[f] && (c.flaw[f] || graph.what_segment(f, cut::FlowGraph::SOURCE) == cut::FlowGraph::SINK);
   leave_no_island(scan, c.keep, replaced);
   leave_no_pinch(scan, c.keep, replaced);
   return replaced;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

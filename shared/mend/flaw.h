@@ -3,7 +3,7 @@
 
 #include "parts/mend/region.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// The constraints of a restoration (thesis 3.3.1, Fig. 7a), per face of the scan.
 struct FlawConstraints {
@@ -22,4 +22,4 @@ FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double 
 /// @return a flag a face, 1 = replaced; what is left has no new non-manifold vertex
 std::vector<char> cut_out_flaw(const Mesh& scan, const Region& region, FlawConstraints constraints, const Mesh& model);
 
-}  // namespace parts
+}  // namespace parts::mend

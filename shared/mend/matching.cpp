@@ -10,7 +10,7 @@
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/loops.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 double robust(double distance, double spread) {
@@ -30,7 +30,7 @@ FitTarget::FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box&
     : flaw_(flaw), size_(size), center_(near.center()), closest_(scan, faces_near(scan, near)) {
   // Vertices on a border, and two rings of faces around it.
   std::vector<char> beside(scan.vertices.size(), 0), bad(scan.vertices.size(), 0);
-  for (const auto& e : boundary_half_edges(scan)) beside[e[0]] = beside[e[1]] = 1;
+  for (const auto& e : mesh::boundary_half_edges(scan)) beside[e[0]] = beside[e[1]] = 1;
   for (int ring = 0; ring < 2; ++ring) {
     std::vector<char> next = beside;
     for (const Triangle& f : scan.faces)
@@ -42,9 +42,9 @@ FitTarget::FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box&
       for (int v : scan.faces[f]) bad[v] = 1;
   Mesh with_normals;
   with_normals.vertices = scan.vertices, with_normals.faces = scan.faces;
-  update_normals(with_normals);
+  mesh::update_normals(with_normals);
   std::vector<char> border(scan.vertices.size(), 0), used(scan.vertices.size(), 0);
-  for (const auto& e : boundary_half_edges(scan)) border[e[0]] = border[e[1]] = 1;
+  for (const auto& e : mesh::boundary_half_edges(scan)) border[e[0]] = border[e[1]] = 1;
   for (int f = 0; f < scan.face_count(); ++f) {
     if (!near.intersects(scan.face_box(f))) continue;
     Alike middle{{Vec3::Zero(), Vec3::Zero()}, f, false};
@@ -61,9 +61,9 @@ FitTarget::FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box&
       rim_.push_back({scan.vertices[v], with_normals.vertex_normal[v].cast<double>()});
 }
 
-std::vector<FitTarget::Alike> FitTarget::most_alike(const std::vector<Sample>& points, double normals,
+std::vector<FitTarget::Alike> FitTarget::most_alike(const std::vector<spatial::Sample>& points, double normals,
                                                     int threads) const {
-  const auto row = [&](const Sample& s, float* to) {
+  const auto row = [&](const spatial::Sample& s, float* to) {
     for (int d = 0; d < 3; ++d) to[d] = float(s.point[d]), to[3 + d] = float(normals * s.normal[d]);
   };
   std::vector<float> all(6 * points_.size());
@@ -92,13 +92,13 @@ void Matching::ask_back(const std::vector<Vec3>& at, double farthest, Targets& t
   Mesh moved;
   moved.vertices = at, moved.faces = model_.faces;
   const double spread = std::max(spread_, first_spread_);
-  const ClosestFace on_model(moved);
+  const spatial::ClosestFace on_model(moved);
   if (on_model.empty()) return;
   std::vector<Vec3> sum(moved.vertices.size(), Vec3::Zero()), normal = sum;
   std::vector<double> weights(moved.vertices.size(), 0);
   int hint = 0;
-  for (const Sample& s : target_.rim()) {
-    const FaceHit hit = on_model(s.point, hint);
+  for (const spatial::Sample& s : target_.rim()) {
+    const spatial::FaceHit hit = on_model(s.point, hint);
     if (hit.on_border || hit.distance > farthest || hit.normal.dot(s.normal) < 0.5) continue;
     const double w = robust(hit.distance, spread);
     for (int k = 0; k < 3; ++k) {
@@ -121,7 +121,7 @@ Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, int s
   const int n = int(at.size());
   Mesh moved;
   moved.vertices = at, moved.faces = model_.faces;
-  update_normals(moved);
+  mesh::update_normals(moved);
   Targets t{at, std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0)};
   std::vector<double> distance(n, -1);
   std::vector<char> over(n, 0), flawed(n, 0);
@@ -129,7 +129,7 @@ Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, int s
     int hint = 0;
     for (long v = begin; v < end; ++v) {
       if (v % stride) continue;
-      const FaceHit hit = target_.closest()(at[v], hint);
+      const spatial::FaceHit hit = target_.closest()(at[v], hint);
       if (hit.on_border || hit.distance > farthest) continue;
       over[v] = 1, flawed[v] = target_.flawed(hit.face);
       if (hit.normal.dot(moved.vertex_normal[v].cast<double>()) < 0.5) continue;
@@ -137,7 +137,7 @@ Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, int s
     }
   });
   if (normals > 0) {
-    std::vector<Sample> asked;
+    std::vector<spatial::Sample> asked;
     std::vector<int> vertex;
     for (int v = 0; v < n; ++v)
       if (over[v]) asked.push_back({at[v], moved.vertex_normal[v].cast<double>()}), vertex.push_back(v);
@@ -170,4 +170,4 @@ Targets Matching::operator()(const std::vector<Vec3>& at, double farthest, int s
   return t;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -5,7 +5,7 @@
 
 #include "parts/spatial/closest_face.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// What a difference of normals counts, of the region's size: mouths find mouths, though other surface is nearer.
 constexpr double kAlike = 0.2;
@@ -32,24 +32,24 @@ class FitTarget {
   double size() const { return size_; }
   const Vec3& center() const { return center_; }  ///< of where it matters, world units
   bool flawed(int face) const { return !flaw_.empty() && flaw_[face]; }
-  const ClosestFace& closest() const { return closest_; }
-  const std::vector<Sample>& rim() const { return rim_; }  ///< good vertices near its borders
+  const spatial::ClosestFace& closest() const { return closest_; }
+  const std::vector<spatial::Sample>& rim() const { return rim_; }  ///< good vertices near its borders
 
   /// Of the target's points the one nearest in place and normal together.
   struct Alike {
-    Sample sample;
+    spatial::Sample sample;
     int face = -1;  ///< a face it lies on
     bool border = false;
   };
   /// @param normals  what a difference of normals counts, world units
-  std::vector<Alike> most_alike(const std::vector<Sample>& points, double normals, int threads) const;
+  std::vector<Alike> most_alike(const std::vector<spatial::Sample>& points, double normals, int threads) const;
 
  private:
   const std::vector<char>& flaw_;
   double size_;
   Vec3 center_;
-  ClosestFace closest_;
-  std::vector<Sample> rim_;
+  spatial::ClosestFace closest_;
+  std::vector<spatial::Sample> rim_;
   std::vector<Alike> points_;
 };
 
@@ -81,4 +81,4 @@ class Matching {
   int threads_;
 };
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -8,7 +8,7 @@
 #include "parts/mesh/prepare.h"
 #include "parts/mesh/topology.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 std::string number(double x) {
@@ -17,12 +17,13 @@ std::string number(double x) {
   return text;
 }
 
-std::vector<Candidate> search(const Mesh& scan, const Region& region, const ModelDatabase& database,
-                              const SearchOptions& options, SearchMemory& memory, Progress& progress) {
-  SearchQuery query{scan, region.box, {}};
+std::vector<search::Candidate> search(const Mesh& scan, const Region& region, const io::ModelDatabase& database,
+                                      const search::SearchOptions& options, search::SearchMemory& memory,
+                                      Progress& progress) {
+  search::SearchQuery query{scan, region.box, {}};
   if (!region.flaw.empty())
     for (char flaw : region.flaw) query.face_weight.push_back(flaw ? 0.f : 1.f);
-  return find_similar(query, database, options, progress, &memory);
+  return search::find_similar(query, database, options, progress, &memory);
 }
 
 /// Closes holes of so few edges that no detail fits into them at the scan's own
@@ -43,14 +44,14 @@ int close_small(Mesh& scan, std::vector<Region>& regions) {
     }
     ++closed;
     if (n == 3) {
-      add_face_like(scan, like[rim[0]], {rim[2], rim[1], rim[0]});
+      mesh::add_face_like(scan, like[rim[0]], {rim[2], rim[1], rim[0]});
       continue;
     }
     Vec3 middle = Vec3::Zero();
     for (int v : rim) middle += scan.vertices[v] / n;
-    const int center = add_vertex_between(scan, rim[0], rim[n / 2], 0.5);
+    const int center = mesh::add_vertex_between(scan, rim[0], rim[n / 2], 0.5);
     scan.vertices[center] = middle;
-    for (int k = 0; k < n; ++k) add_face_like(scan, like[rim[k]], {rim[(k + 1) % n], rim[k], center});
+    for (int k = 0; k < n; ++k) mesh::add_face_like(scan, like[rim[k]], {rim[(k + 1) % n], rim[k], center});
   }
   regions = std::move(rest);
   return closed;
@@ -88,7 +89,7 @@ bool find_again(Region& region, const Mesh& before, const Mesh& now) {
   return !region.rims.empty();
 }
 
-void log_region(const RestoreReport& r, const std::vector<Candidate>& found, const ModelDatabase& database,
+void log_region(const RestoreReport& r, const std::vector<search::Candidate>& found, const io::ModelDatabase& database,
                 Progress& progress) {
   for (std::size_t i = 0; i < found.size(); ++i)
     progress.log("candidate_" + std::to_string(i + 1) + ": " + database.name(found[i].model) + " " +
@@ -108,7 +109,7 @@ void log_region(const RestoreReport& r, const std::vector<Candidate>& found, con
 /// @param first  vertices from here on are copies
 Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first) {
   constexpr int kMostFaces = 12;
-  const std::vector<int> component = vertex_components(mesh);
+  const std::vector<int> component = mesh::vertex_components(mesh);
   std::vector<int> faces(mesh.vertices.size(), 0);
   for (const Triangle& f : mesh.faces) ++faces[component[f[0]]];
   std::vector<char> hung(mesh.vertices.size(), 0), keep;
@@ -119,15 +120,15 @@ Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first)
     const int piece = component[f[0]];
     keep.push_back(!hung[piece] || faces[piece] > kMostFaces || faces[piece] == largest);
   }
-  return take_faces(mesh, keep);
+  return mesh::take_faces(mesh, keep);
 }
 
 /// Fit for finding rims: where one touches itself in a vertex, as the teeth of a
 /// torn border do, its corners get vertices of their own.
 Mesh prepared(const Mesh& input) {
-  Mesh mesh = prepare(input).mesh;
+  Mesh mesh = mesh::prepare(input).mesh;
   const int first = mesh.vertex_count();
-  const std::vector<int> copies = split_pinches(mesh, std::vector<char>(mesh.vertices.size(), 1));
+  const std::vector<int> copies = mesh::split_pinches(mesh, std::vector<char>(mesh.vertices.size(), 1));
   return copies.empty() ? mesh : without_crumbs(mesh, copies, first);
 }
 
@@ -140,18 +141,18 @@ Mesh placed(Mesh mesh, const Eigen::Affine3d& placement) {
   return mesh;
 }
 
-std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database, const MendOptions& options,
+std::vector<Found> find_models(const Mesh& input, const io::ModelDatabase& database, const MendOptions& options,
                                Progress& progress) {
   const Mesh scan = prepared(input);
   const std::vector<Region> regions = regions_of(scan, options);
   std::vector<Found> all;
-  SearchMemory memory;
+  search::SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     Progress part = progress.part(int(100 * i / regions.size()), int(100 * (i + 1) / regions.size()));
     progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
-    const std::vector<Candidate> found = search(scan, regions[i], database, options.search, memory, part);
+    const std::vector<search::Candidate> found = search(scan, regions[i], database, options.search, memory, part);
     for (std::size_t k = 0; k < found.size(); ++k) {
-      const Candidate& c = found[k];
+      const search::Candidate& c = found[k];
       progress.log("candidate_" + std::to_string(k + 1) + ": " + database.name(c.model) + " " + number(c.score));
       all.push_back({int(i), placed(database.load(c.model), c.placement), database.name(c.model), c.score});
     }
@@ -159,7 +160,7 @@ std::vector<Found> find_models(const Mesh& input, const ModelDatabase& database,
   return all;
 }
 
-Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOptions& options, Progress& progress) {
+Mended mend_scan(const Mesh& input, const io::ModelDatabase& database, const MendOptions& options, Progress& progress) {
   Mended out;
   Mesh first = prepared(input);
   std::vector<Region> regions = regions_of(first, options);
@@ -170,13 +171,13 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
   }
   out.mesh = first;
   // More are blended than are tried as the base.
-  SearchOptions search_options = options.search;
+  search::SearchOptions search_options = options.search;
   RestoreOptions restore_options = options.restore;
   restore_options.tries = options.search.candidates;
   if (options.restore.fit_to_rim)
     search_options.candidates = std::max(search_options.candidates, options.restore.blend);
   std::string failure;
-  SearchMemory memory;
+  search::SearchMemory memory;
   // Whether the region is whole now; from and to are per cent of the progress.
   const auto mend = [&](std::size_t i, int from, int to) {
     progress.log("region: " + std::to_string(i + 1) + "/" + std::to_string(regions.size()));
@@ -188,9 +189,10 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
     try {
       const int middle = from + (to - from) / 2;
       Progress searching = progress.part(from, middle);
-      const std::vector<Candidate> found = search(out.mesh, region, database, search_options, memory, searching);
+      const std::vector<search::Candidate> found =
+          search(out.mesh, region, database, search_options, memory, searching);
       std::vector<PlacedModel> models;
-      for (const Candidate& c : found)
+      for (const search::Candidate& c : found)
         models.push_back({placed(database.load(c.model), c.placement), database.name(c.model)});
       Progress mending = progress.part(middle, to);
       mending.stage(options.fill ? "Filling" : "Restoring", 0, 100);
@@ -198,7 +200,7 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
                                 : restore_surface(out.mesh, region, models, restore_options, mending);
       log_region(r.report, found, database, progress);
       out.mesh = std::move(r.mesh);
-      const Candidate& used = found[r.report.model];
+      const search::Candidate& used = found[r.report.model];
       out.candidates.push_back({int(i), std::move(r.candidate), database.name(used.model), used.score});
       return true;
     } catch (const UserError& e) {
@@ -220,4 +222,4 @@ Mended mend_scan(const Mesh& input, const ModelDatabase& database, const MendOpt
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

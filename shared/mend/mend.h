@@ -5,13 +5,13 @@
 #include "parts/mend/restore.h"
 #include "parts/search/search.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// What is to be found or mended, and how.
 struct MendOptions {
   bool fill = false;  ///< holes; else flaws
   RegionOptions region;
-  SearchOptions search;
+  search::SearchOptions search;
   RestoreOptions restore;
 };
 
@@ -26,7 +26,7 @@ struct Found {
 /// The models most like the scan around its flaws and holes, best first, for
 /// each region in turn. Regions around flaws where the selection holds no hole.
 /// @throws UserError, Cancelled
-std::vector<Found> find_models(const Mesh& scan, const ModelDatabase& database, const MendOptions& options,
+std::vector<Found> find_models(const Mesh& scan, const io::ModelDatabase& database, const MendOptions& options,
                                Progress& progress);
 
 struct Mended {
@@ -38,9 +38,9 @@ struct Mended {
 /// Restores every flaw or fills every hole of a scan, each from its own best
 /// match. Of several, those that no model fits are left as they are and logged.
 /// @throws UserError  none could be mended; @throws Cancelled
-Mended mend_scan(const Mesh& scan, const ModelDatabase& database, const MendOptions& options, Progress& progress);
+Mended mend_scan(const Mesh& scan, const io::ModelDatabase& database, const MendOptions& options, Progress& progress);
 
 /// A mesh moved by a similarity, its normals turned.
 Mesh placed(Mesh mesh, const Eigen::Affine3d& placement);
 
-}  // namespace parts
+}  // namespace parts::mend

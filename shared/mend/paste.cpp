@@ -13,22 +13,22 @@
 #include "parts/seam/seam.h"
 #include "parts/spatial/closest_face.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 /// The distance to the borders of a scan.
 class RimDistance {
  public:
-  RimDistance(const Mesh& scan, const std::vector<Loop>& rims) {
-    Surface segments;
-    for (const Loop& rim : rims)
+  RimDistance(const Mesh& scan, const std::vector<mesh::Loop>& rims) {
+    spatial::Surface segments;
+    for (const mesh::Loop& rim : rims)
       for (int i = 0; i < rim.size(); ++i) {
         const Vec3 &a = scan.vertices[rim.vertices[i]], &b = scan.vertices[rim.vertices[(i + 1) % rim.size()]];
         if (a == b) continue;
         segments.triangles.push_back({a, b, b});  // a triangle of no width
         segments.normals.push_back(Vec3::UnitZ());
       }
-    tree_ = std::make_unique<TriangleTree>(segments);
+    tree_ = std::make_unique<spatial::TriangleTree>(segments);
   }
   double operator()(const Vec3& p) const {
     int hint = 0;
@@ -36,10 +36,10 @@ class RimDistance {
   }
 
  private:
-  std::unique_ptr<TriangleTree> tree_;
+  std::unique_ptr<spatial::TriangleTree> tree_;
 };
 
-double mean_edge(const Mesh& mesh, const Loop& rim) { return loop_length(mesh, rim) / rim.size(); }
+double mean_edge(const Mesh& mesh, const mesh::Loop& rim) { return mesh::loop_length(mesh, rim) / rim.size(); }
 
 /// Faces of the model that seem to lie on the scan but in the midst of others
 /// that do not: the scan's own lower lip, say, within the upper one that is missing.
@@ -65,11 +65,11 @@ std::vector<char> enclosed(const Mesh& model, const std::vector<char>& covered) 
 
 /// The model's part that lies beyond the scan's borders.
 /// @param gap  how far from them it ends, world units
-Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loop>& rims, double edge, double gap,
-                      const PasteOptions& options) {
-  const ClosestFace on_scan(scan), on_model(model);
+seam::Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<mesh::Loop>& rims, double edge,
+                            double gap, const PasteOptions& options) {
+  const spatial::ClosestFace on_scan(scan), on_model(model);
   const RimDistance to_rim(scan, rims);
-  const auto covers = [&](const FaceHit& hit, const Vec3& normal) {
+  const auto covers = [&](const spatial::FaceHit& hit, const Vec3& normal) {
     return !hit.on_border && hit.distance <= options.tolerance && hit.normal.dot(normal) > 0;
   };
   std::vector<char> covered(model.vertices.size(), 0);
@@ -83,9 +83,9 @@ Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loo
     for (int v = 0; v < model.vertex_count(); ++v) covered[v] = covers(on_scan(model.vertices[v], hint), normals[v]);
   }
   const std::vector<char> island = enclosed(model, covered);
-  ClipField field;
+  seam::ClipField field;
   field.value = [&](const Vec3& p) {
-    const FaceHit hit = on_scan(p), own = on_model(p);
+    const spatial::FaceHit hit = on_scan(p), own = on_model(p);
     const double d = to_rim(p);
     return (!island[own.face] && covers(hit, own.normal) ? -d : d) - gap;
   };
@@ -94,16 +94,16 @@ Clipped beyond_border(const Mesh& scan, const Mesh& model, const std::vector<Loo
     return to_rim(b.center()) <= gap + b.diagonal().norm();
   };
   field.max_edge = edge;
-  return clip(model, std::vector<signed char>(model.faces.size(), 0), field, options.threads);
+  return seam::clip(model, std::vector<signed char>(model.faces.size(), 0), field, options.threads);
 }
 
 /// Keeps the components with flag 1 (by the number of vertex_components).
-void keep_components(Clipped& c, const std::vector<int>& component, const std::vector<char>& keep) {
+void keep_components(seam::Clipped& c, const std::vector<int>& component, const std::vector<char>& keep) {
   std::vector<char> flags(c.mesh.faces.size());
   for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = keep[component[c.mesh.faces[f][0]]];
   std::vector<int> old_vertex, old_face, number(c.mesh.vertices.size(), -1);
-  Clipped out;
-  out.mesh = take_faces(c.mesh, flags, &old_vertex, &old_face);
+  seam::Clipped out;
+  out.mesh = mesh::take_faces(c.mesh, flags, &old_vertex, &old_face);
   for (int f : old_face) out.source_face.push_back(c.source_face[f]);
   for (std::size_t v = 0; v < old_vertex.size(); ++v) {
     number[old_vertex[v]] = int(v);
@@ -115,14 +115,14 @@ void keep_components(Clipped& c, const std::vector<int>& component, const std::v
 }
 
 /// Of what lies beyond the borders, the pieces that face this rim, no farther than max_gap on average.
-void keep_facing(Clipped& patch, const Mesh& scan, const Loop& rim, double max_gap) {
+void keep_facing(seam::Clipped& patch, const Mesh& scan, const mesh::Loop& rim, double max_gap) {
   const RimDistance to_rim(scan, {rim});
-  const std::vector<int> component = vertex_components(patch.mesh);
+  const std::vector<int> component = mesh::vertex_components(patch.mesh);
   std::vector<double> facing(patch.mesh.vertices.size(), 0);  // length of such borders, per component
-  for (const Loop& loop : trace_loops(patch.border)) {
+  for (const mesh::Loop& loop : mesh::trace_loops(patch.border)) {
     double sum = 0;
     for (int v : loop.vertices) sum += to_rim(patch.mesh.vertices[v]);
-    if (sum <= max_gap * loop.size()) facing[component[loop.vertices[0]]] += loop_length(patch.mesh, loop);
+    if (sum <= max_gap * loop.size()) facing[component[loop.vertices[0]]] += mesh::loop_length(patch.mesh, loop);
   }
   // Splinters between the rim's teeth are left to the stitch.
   const double most = facing.empty() ? 0 : *std::max_element(facing.begin(), facing.end());
@@ -132,8 +132,8 @@ void keep_facing(Clipped& patch, const Mesh& scan, const Loop& rim, double max_g
 }
 
 /// Flags of the scan's faces that belong to small loose pieces within the region.
-std::vector<char> loose_pieces(const Mesh& scan, const Loop& rim, double size) {
-  const std::vector<int> component = vertex_components(scan);
+std::vector<char> loose_pieces(const Mesh& scan, const mesh::Loop& rim, double size) {
+  const std::vector<int> component = mesh::vertex_components(scan);
   const int own = component[rim.vertices[0]];
   std::vector<Box> box(scan.vertices.size());
   for (int v = 0; v < scan.vertex_count(); ++v) box[component[v]].extend(scan.vertices[v]);
@@ -150,14 +150,14 @@ std::vector<char> loose_pieces(const Mesh& scan, const Loop& rim, double size) {
 
 /// Of the loose pieces, those that the patch runs along: an eyeball behind its lids mostly does not.
 std::vector<char> covered_pieces(const Mesh& scan, const std::vector<char>& loose, const Mesh& patch, double near) {
-  const std::vector<int> component = vertex_components(scan);
-  const ClosestFace on_patch(patch);
+  const std::vector<int> component = mesh::vertex_components(scan);
+  const spatial::ClosestFace on_patch(patch);
   std::vector<long> count(scan.vertices.size(), 0), close(scan.vertices.size(), 0);
   for (int f = 0; f < scan.face_count(); ++f) {
     if (!loose[f]) continue;
     const Vec3 center = (scan.corner(f, 0) + scan.corner(f, 1) + scan.corner(f, 2)) / 3;
     const Vec3 n = (scan.corner(f, 1) - scan.corner(f, 0)).cross(scan.corner(f, 2) - scan.corner(f, 0));
-    const FaceHit hit = on_patch(center);
+    const spatial::FaceHit hit = on_patch(center);
     ++count[component[scan.faces[f][0]]];
     close[component[scan.faces[f][0]]] += hit.distance <= near && !hit.on_border && hit.normal.dot(n) > 0;
   }
@@ -167,17 +167,17 @@ std::vector<char> covered_pieces(const Mesh& scan, const std::vector<char>& loos
   return covered;
 }
 
-Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Loop>& rims) {
-  Joined j;
+seam::Joined side_by_side(const Mesh& scan, const seam::Clipped& patch, const std::vector<mesh::Loop>& rims) {
+  seam::Joined j;
   j.mesh = scan;
-  append(j.mesh, patch.mesh);
+  mesh::append(j.mesh, patch.mesh);
   const int first = scan.vertex_count();
-  j.seam.assign(j.mesh.vertices.size(), kNoSeam), j.fixed.assign(j.mesh.vertices.size(), 0);
+  j.seam.assign(j.mesh.vertices.size(), seam::kNoSeam), j.fixed.assign(j.mesh.vertices.size(), 0);
   j.closed.assign(j.mesh.vertices.size(), 0), j.like.assign(j.mesh.vertices.size(), -1);
   std::fill(j.fixed.begin(), j.fixed.begin() + first, 1);
   for (std::size_t v = first; v < j.closed.size(); ++v) {
     j.closed[v] = 1;
-    if (patch.cut_vertex[v - first]) j.seam[v] = kBorderB;
+    if (patch.cut_vertex[v - first]) j.seam[v] = seam::kBorderB;
   }
   for (int f = 0; f < j.mesh.face_count(); ++f) {
     j.tag.push_back(f >= scan.face_count());
@@ -186,50 +186,50 @@ Joined side_by_side(const Mesh& scan, const Clipped& patch, const std::vector<Lo
   j.loops_a = rims;
   std::vector<std::array<int, 2>> border = patch.border;
   for (auto& e : border) e[0] += first, e[1] += first;
-  j.loops_b = trace_loops(border);
-  for (const Loop& rim : rims)
-    for (int v : rim.vertices) j.seam[v] = kBorderA;
+  j.loops_b = mesh::trace_loops(border);
+  for (const mesh::Loop& rim : rims)
+    for (int v : rim.vertices) j.seam[v] = seam::kBorderA;
   return j;
 }
 
 /// All that is open was so before, and the rim is not.
-bool closes(const Mesh& before, const Loop& rim, const Mesh& after) {
-  std::set<EdgePlace> open;
-  for (const auto& e : boundary_half_edges(before)) open.insert(edge_place(before, e[0], e[1]));
+bool closes(const Mesh& before, const mesh::Loop& rim, const Mesh& after) {
+  std::set<mesh::EdgePlace> open;
+  for (const auto& e : mesh::boundary_half_edges(before)) open.insert(mesh::edge_place(before, e[0], e[1]));
   for (int i = 0; i < rim.size(); ++i)
-    open.erase(edge_place(before, rim.vertices[i], rim.vertices[(i + 1) % rim.size()]));
-  const auto left = boundary_half_edges(after);
+    open.erase(mesh::edge_place(before, rim.vertices[i], rim.vertices[(i + 1) % rim.size()]));
+  const auto left = mesh::boundary_half_edges(after);
   return std::all_of(left.begin(), left.end(),
-                     [&](const auto& e) { return open.count(edge_place(after, e[0], e[1])) > 0; });
+                     [&](const auto& e) { return open.count(mesh::edge_place(after, e[0], e[1])) > 0; });
 }
 
 /// Pieces of the model that were joined to nothing go.
 void drop_unjoined(Mesh& mesh, std::vector<char>& tag) {
-  const std::vector<int> component = vertex_components(mesh);
+  const std::vector<int> component = mesh::vertex_components(mesh);
   std::vector<char> of_scan(mesh.vertices.size(), 0), keep(tag.size());
   for (std::size_t f = 0; f < tag.size(); ++f)
     if (!tag[f]) of_scan[component[mesh.faces[f][0]]] = 1;
   for (std::size_t f = 0; f < tag.size(); ++f) keep[f] = of_scan[component[mesh.faces[f][0]]];
   if (std::find(keep.begin(), keep.end(), 0) == keep.end()) return;
   std::vector<int> old_face;
-  mesh = take_faces(mesh, keep, nullptr, &old_face);
+  mesh = mesh::take_faces(mesh, keep, nullptr, &old_face);
   std::vector<char> left;
   for (int f : old_face) left.push_back(tag[f]);
   tag = std::move(left);
 }
 
 /// @param away  how far from the rim the model is to end, in edges of the rim
-Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_with_islands, double away,
+Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const mesh::Loop& rim_with_islands, double away,
              const PasteOptions& options) {
   Pasted out;
   // Loose pieces: out of the way at first, and back where the patch does not cover them.
   Mesh scan = scan_with_islands;
-  Loop rim = rim_with_islands;
+  mesh::Loop rim = rim_with_islands;
   const auto without = [&](const std::vector<char>& gone) {
     std::vector<char> keep(gone.size());
     for (std::size_t f = 0; f < gone.size(); ++f) keep[f] = !gone[f];
     std::vector<int> old_vertex, number(scan_with_islands.vertices.size(), -1);
-    scan = take_faces(scan_with_islands, keep, &old_vertex);
+    scan = mesh::take_faces(scan_with_islands, keep, &old_vertex);
     for (std::size_t v = 0; v < old_vertex.size(); ++v) number[old_vertex[v]] = int(v);
     for (std::size_t i = 0; i < rim.vertices.size(); ++i) rim.vertices[i] = number[rim_with_islands.vertices[i]];
   };
@@ -238,14 +238,14 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   if (any_loose) without(loose);
 
   const double edge = mean_edge(scan, rim), max_gap = std::max(3 * edge, 0.5 * options.tolerance) + away * edge;
-  std::vector<Loop> rims = find_rims(scan);
-  Clipped patch = beyond_border(scan, model, rims, edge, away * edge, options);
+  std::vector<mesh::Loop> rims = find_rims(scan);
+  seam::Clipped patch = beyond_border(scan, model, rims, edge, away * edge, options);
   keep_facing(patch, scan, rim, max_gap);
   if (patch.mesh.faces.empty()) return out;
   if (any_loose) {
     const std::vector<char> covered = covered_pieces(scan_with_islands, loose, patch.mesh, 2 * options.tolerance);
     without(covered);
-    std::vector<int> pieces = vertex_components(scan_with_islands);
+    std::vector<int> pieces = mesh::vertex_components(scan_with_islands);
     std::vector<char> seen(pieces.size(), 0);
     for (std::size_t f = 0; f < covered.size(); ++f)
       if (const int c = pieces[scan_with_islands.faces[f][0]]; covered[f] && !seen[c]) seen[c] = 1, ++out.islands;
@@ -254,19 +254,19 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
   // Only rims that the patch may reach.
   Box reach = patch.mesh.bounds();
   rims.erase(std::remove_if(rims.begin(), rims.end(),
-                            [&](const Loop& l) {
+                            [&](const mesh::Loop& l) {
                               Box b;
                               for (int v : l.vertices) b.extend(scan.vertices[v]);
                               return reach.exteriorDistance(b) > max_gap;
                             }),
              rims.end());
-  Joined j = side_by_side(scan, patch, rims);
-  const MeshCheck before = check(scan), loose_patch = check(patch.mesh);
-  SeamReport report;
-  stitch_parts(j, max_gap, report);
-  out.crossings = finish_seam(j, edge, Cut::Refined, options.smoothing, options.threads);
+  seam::Joined j = side_by_side(scan, patch, rims);
+  const mesh::MeshCheck before = mesh::check(scan), loose_patch = mesh::check(patch.mesh);
+  seam::SeamReport report;
+  seam::stitch_parts(j, max_gap, report);
+  out.crossings = seam::finish_seam(j, edge, cut::Cut::Refined, options.smoothing, options.threads);
   drop_unjoined(j.mesh, j.tag);
-  const MeshCheck after = check(j.mesh);
+  const mesh::MeshCheck after = mesh::check(j.mesh);
   out.joined = report.loops_joined, out.capped = report.loops_capped;
   out.seam_length = report.seam_length, out.seam_gap = report.seam_gap;
   out.closed = report.loops_joined > 0 && closes(scan, rim, j.mesh) &&
@@ -280,7 +280,7 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const Loop& rim_w
 
 }  // namespace
 
-Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOptions& options) {
+Pasted paste(const Mesh& scan, const Mesh& model, const mesh::Loop& rim, const PasteOptions& options) {
   // As near as can be; where that leaves splinters that do not join, or faces that cross, farther off.
   Pasted best;
   for (double away : {0.4, 1.2, 2.4}) {
@@ -291,4 +291,4 @@ Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOp
   return best;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

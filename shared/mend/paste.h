@@ -4,12 +4,12 @@
 #include "parts/mend/region.h"
 #include "parts/seam/seam.h"
 
-namespace parts {
+namespace parts::mend {
 
 struct PasteOptions {
   double size = 0;       ///< of the region, world units
   double tolerance = 0;  ///< how far a model's surface may lie from the scan's and still be the same, world units
-  SeamSmoothing smoothing;
+  seam::SeamSmoothing smoothing;
   int threads = 0;
 };
 
@@ -29,6 +29,6 @@ struct Pasted {
 /// @param scan  prepared: welded, its faces oriented
 /// @param model fitted to the scan, welded, faces oriented as the scan's
 /// @param rim   the hole: closed, vertices in the faces' direction
-Pasted paste(const Mesh& scan, const Mesh& model, const Loop& rim, const PasteOptions& options);
+Pasted paste(const Mesh& scan, const Mesh& model, const mesh::Loop& rim, const PasteOptions& options);
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -10,7 +10,7 @@
 #include "parts/mesh/edges.h"
 #include "parts/mesh/topology.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 constexpr double kMargin = 0.35;  // of the half diagonal
@@ -47,7 +47,7 @@ std::vector<char> selected_faces(const Mesh& scan) {
   return selected;
 }
 
-Box box_of(const Mesh& scan, const Loop& rim) {
+Box box_of(const Mesh& scan, const mesh::Loop& rim) {
   Box box;
   for (int v : rim.vertices) box.extend(scan.vertices[v]);
   return box;
@@ -59,25 +59,25 @@ void check_scan(const Mesh& scan) {
 
 }  // namespace
 
-std::vector<Loop> find_rims(const Mesh& scan) {
-  std::vector<Loop> rims;
-  const EdgeMap map = edge_map(scan);
-  for (std::vector<int>& vertices : boundary_loops(scan, map)) {
-    Loop rim{std::move(vertices), true};
+std::vector<mesh::Loop> find_rims(const Mesh& scan) {
+  std::vector<mesh::Loop> rims;
+  const mesh::EdgeMap map = mesh::edge_map(scan);
+  for (std::vector<int>& vertices : mesh::boundary_loops(scan, map)) {
+    mesh::Loop rim{std::move(vertices), true};
     if (rim.size() >= 3) rims.push_back(std::move(rim));
   }
   return rims;
 }
 
-std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<Loop>& rims) {
-  const auto place = [](const Mesh& m, const Loop& l, int i) {
-    return edge_place(m, l.vertices[i], l.vertices[(i + 1) % l.size()]);
+std::vector<mesh::Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<mesh::Loop>& rims) {
+  const auto place = [](const Mesh& m, const mesh::Loop& l, int i) {
+    return mesh::edge_place(m, l.vertices[i], l.vertices[(i + 1) % l.size()]);
   };
-  std::set<EdgePlace> edges;
-  for (const Loop& rim : rims)
+  std::set<mesh::EdgePlace> edges;
+  for (const mesh::Loop& rim : rims)
     for (int i = 0; i < rim.size(); ++i) edges.insert(place(before, rim, i));
-  std::vector<Loop> left;
-  for (Loop& rim : find_rims(now)) {
+  std::vector<mesh::Loop> left;
+  for (mesh::Loop& rim : find_rims(now)) {
     bool held = false;
     for (int i = 0; i < rim.size() && !held; ++i) held = edges.count(place(now, rim, i)) > 0;
     if (held) left.push_back(std::move(rim));
@@ -88,12 +88,12 @@ std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vect
 namespace {
 
 /// Not the outlines of crumbs: loose pieces that are hardly more than a rim.
-std::vector<Loop> rims_of_surfaces(const Mesh& scan, std::vector<Loop> rims) {
-  const std::vector<int> component = vertex_components(scan);
+std::vector<mesh::Loop> rims_of_surfaces(const Mesh& scan, std::vector<mesh::Loop> rims) {
+  const std::vector<int> component = mesh::vertex_components(scan);
   std::vector<int> faces(scan.vertices.size(), 0);
   for (const Triangle& f : scan.faces) ++faces[component[f[0]]];
   const int largest = faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
-  const auto crumb = [&](const Loop& rim) {
+  const auto crumb = [&](const mesh::Loop& rim) {
     const int own = faces[component[rim.vertices[0]]];
     return own <= rim.size() - 2 || (own <= 2 * rim.size() && own < largest);
   };
@@ -146,7 +146,7 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
 
 std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options) {
   check_scan(scan);
-  const std::vector<Loop> rims = rims_of_surfaces(scan, find_rims(scan));
+  const std::vector<mesh::Loop> rims = rims_of_surfaces(scan, find_rims(scan));
   if (rims.empty())
     throw UserError("The scan has no hole; choose a layer with an open border, or use Restore Surface.");
   const Box box = options.by == RegionBy::Box ? checked_box(scan, options) : Box();
@@ -160,10 +160,10 @@ std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options)
     }
   if (options.by == RegionBy::Selection && selection.isEmpty())
     throw UserError("No face is selected; select some faces beside the hole, or choose Around all holes.");
-  const auto is_selected = [&](const Loop& rim) {
+  const auto is_selected = [&](const mesh::Loop& rim) {
     return std::any_of(rim.vertices.begin(), rim.vertices.end(), [&](int v) { return at_selection[v] != 0; });
   };
-  const auto share_inside = [&](const Loop& rim, const Box& b) {
+  const auto share_inside = [&](const mesh::Loop& rim, const Box& b) {
     long inside = 0;
     for (int v : rim.vertices) inside += b.contains(scan.vertices[v]);
     return double(inside) / rim.size();
@@ -172,11 +172,11 @@ std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options)
 
   std::vector<Region> regions;
   int left = 0;
-  for (const Loop& rim : rims) {
+  for (const mesh::Loop& rim : rims) {
     bool wanted = false;
     if (options.by == RegionBy::Holes) {
       wanted = !(options.leave_selected && is_selected(rim)) &&
-               !(options.longest_rim > 0 && loop_length(scan, rim) > options.longest_rim);
+               !(options.longest_rim > 0 && mesh::loop_length(scan, rim) > options.longest_rim);
       left += !wanted;
     } else if (options.by == RegionBy::Selection) {
       // Faces selected all around a hole, not at its very rim, mean it as well.
@@ -198,7 +198,7 @@ std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options)
                     " holes are left out by their size or by the selection; raise the longest rim, or select less.");
   }
   std::vector<double> length;
-  for (const Region& r : regions) length.push_back(loop_length(scan, r.rims[0]));
+  for (const Region& r : regions) length.push_back(mesh::loop_length(scan, r.rims[0]));
   std::vector<int> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return length[a] > length[b]; });
@@ -207,4 +207,4 @@ std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options)
   return sorted;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

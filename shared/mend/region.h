@@ -6,7 +6,7 @@
 #include "parts/mesh/loops.h"
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// The ways to say where a scan is to be mended.
 enum class RegionBy {
@@ -26,19 +26,19 @@ struct RegionOptions {
 
 /// A place to be mended.
 struct Region {
-  Box box;                 ///< flaw or hole and the margin around it
-  std::vector<char> flaw;  ///< per face of the scan: damaged; empty where only the box is known
-  std::vector<Loop> rims;  ///< of the holes in it; empty for a flaw
+  Box box;                       ///< flaw or hole and the margin around it
+  std::vector<char> flaw;        ///< per face of the scan: damaged; empty where only the box is known
+  std::vector<mesh::Loop> rims;  ///< of the holes in it; empty for a flaw
   double size() const { return box.diagonal().norm() / 2; }
 };
 
 /// The closed borders of a surface, in the direction of its faces.
-std::vector<Loop> find_rims(const Mesh& scan);
+std::vector<mesh::Loop> find_rims(const Mesh& scan);
 
 /// Of the rims of a scan that has changed, those that still hold an edge of the
 /// rims it had: a patch may join a rim in part, and numbers change.
 /// @param now, before  the scan; the rims are those of `before`
-std::vector<Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<Loop>& rims);
+std::vector<mesh::Loop> rims_left(const Mesh& now, const Mesh& before, const std::vector<mesh::Loop>& rims);
 
 /// The flaws to be restored: one region for each group of selected faces, or
 /// the box. With Holes, as hole_regions().
@@ -49,4 +49,4 @@ std::vector<Region> flaw_regions(const Mesh& scan, const RegionOptions& options)
 /// @throws UserError  there is no hole where the options say
 std::vector<Region> hole_regions(const Mesh& scan, const RegionOptions& options);
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -14,7 +14,7 @@
 #include "parts/mesh/topology.h"
 #include "parts/spatial/closest_face.h"
 
-namespace parts {
+namespace parts::mend {
 namespace {
 
 constexpr double kAround = 0.8;  // of the region's size
@@ -33,18 +33,18 @@ Mesh surroundings(const Mesh& model, const Region& region) {
   const Box box = around(region, kAround);
   std::vector<char> in(model.faces.size());
   for (int f = 0; f < model.face_count(); ++f) in[f] = box.intersects(model.face_box(f));
-  return take_faces(model, in);
+  return mesh::take_faces(model, in);
 }
 
 /// Turns a model over if most of it faces the other way than the scan beside it.
-void agree_on_sides(Mesh& model, const ClosestFace& on_scan, double near) {
+void agree_on_sides(Mesh& model, const spatial::ClosestFace& on_scan, double near) {
   double balance = 0;
   for (int f = 0; f < model.face_count(); ++f) {
     const Vec3 n = (model.corner(f, 1) - model.corner(f, 0)).cross(model.corner(f, 2) - model.corner(f, 0));
-    const FaceHit hit = on_scan(center_of(model, f));
+    const spatial::FaceHit hit = on_scan(center_of(model, f));
     if (!hit.on_border && hit.distance < near) balance += n.dot(hit.normal);
   }
-  if (balance < 0) flip_orientation(model);
+  if (balance < 0) mesh::flip_orientation(model);
 }
 
 /// A model brought to the scan: rigidly, then smoothly.
@@ -84,7 +84,7 @@ class Mender {
   Restored thesis_cut(const Fit& fit, const std::vector<char>& keep, const std::vector<char>& keep_of_model) const;
   std::vector<char> far_from_scan(const Mesh& model) const;
   std::vector<char> near_centre(const Mesh& model) const;
-  bool paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const;
+  bool paste_into(const Mesh& open, const std::vector<mesh::Loop>& rims, const Fit& fit, Restored& out) const;
 
   const Mesh& scan_;
   const Region& region_;
@@ -97,7 +97,7 @@ class Mender {
 void Mender::bring(Candidate& candidate, int model, const FitTarget& target) const {
   candidate.done = true;
   Mesh& mesh = candidate.posed.mesh;
-  mesh = surroundings(prepare(models_[model].mesh).mesh, region_);
+  mesh = surroundings(mesh::prepare(models_[model].mesh).mesh, region_);
   if (mesh.faces.empty()) return;
   agree_on_sides(mesh, target.closest(), 0.5 * region_.size());
   FitOptions o;
@@ -162,7 +162,7 @@ Fit Mender::fit(int model, const FitTarget& target) {
     f.fitted.rms_before = before;
     f.mesh.vertices = f.fitted.vertices;
   }
-  if (!f.mesh.vertex_normal.empty()) update_normals(f.mesh);
+  if (!f.mesh.vertex_normal.empty()) mesh::update_normals(f.mesh);
   return f;
 }
 
@@ -175,12 +175,12 @@ PasteOptions Mender::paste_options() const {
   return o;
 }
 
-bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const Fit& fit, Restored& out) const {
+bool Mender::paste_into(const Mesh& open, const std::vector<mesh::Loop>& rims, const Fit& fit, Restored& out) const {
   Mesh mesh = open;
   std::vector<char> tag(open.faces.size(), 0);
   RestoreReport& r = out.report;
   r = {};
-  for (std::vector<Loop> left = rims; !left.empty(); left = rims_left(mesh, open, rims)) {
+  for (std::vector<mesh::Loop> left = rims; !left.empty(); left = rims_left(mesh, open, rims)) {
     Pasted p = paste(mesh, fit.mesh, left[0], paste_options());
     if (!p.closed) return false;
     r.rims_joined += p.joined, r.borders_capped += p.capped, r.islands_dropped += p.islands;
@@ -205,12 +205,12 @@ bool Mender::paste_into(const Mesh& open, const std::vector<Loop>& rims, const F
 /// Fig. 7b: the model's faces in the region whose distance from the scan is a
 /// large share of the largest.
 std::vector<char> Mender::far_from_scan(const Mesh& model) const {
-  const ClosestFace on_scan(scan_);
+  const spatial::ClosestFace on_scan(scan_);
   std::vector<double> distance(model.faces.size(), 0);
   double most = 0;
   for (int f = 0; f < model.face_count(); ++f) {
     if (!region_.box.contains(model.face_box(f))) continue;
-    const FaceHit hit = on_scan(center_of(model, f));
+    const spatial::FaceHit hit = on_scan(center_of(model, f));
     if (hit.on_border) most = std::max(most, distance[f] = hit.distance);
   }
   std::vector<char> keep(model.faces.size());
@@ -221,7 +221,7 @@ std::vector<char> Mender::far_from_scan(const Mesh& model) const {
 /// Fig. 7a: the model's faces nearest the centre, or over the selected flaw.
 std::vector<char> Mender::near_centre(const Mesh& model) const {
   std::vector<char> keep(model.faces.size(), 0);
-  const ClosestFace on_scan(scan_);
+  const spatial::ClosestFace on_scan(scan_);
   const Vec3 half = region_.box.sizes() / 2;
   std::vector<double> away(model.faces.size());
   for (int f = 0; f < model.face_count(); ++f)
@@ -237,16 +237,16 @@ std::vector<char> Mender::near_centre(const Mesh& model) const {
 
 Restored Mender::thesis_cut(const Fit& fit, const std::vector<char>& keep,
                             const std::vector<char>& keep_of_model) const {
-  ComposeOptions o;
+  compose::ComposeOptions o;
   o.resolution = options_.resolution;
-  o.cut = Cut::Thesis;
+  o.cut = cut::Cut::Thesis;
   o.smoothing = options_.smoothing;
   o.volume = region_.box;
   o.threads = options_.threads;
   Progress part = progress_.part(50, 100);
-  ComposeResult composed =
-      compose({scan_, keep, "the scan"}, {fit.mesh, keep_of_model, "the model of the database"}, o, part);
-  const MeshCheck before = check(scan_), after = check(composed.composed);
+  compose::ComposeResult composed =
+      compose::compose({scan_, keep, "the scan"}, {fit.mesh, keep_of_model, "the model of the database"}, o, part);
+  const mesh::MeshCheck before = mesh::check(scan_), after = mesh::check(composed.composed);
   const int wanted = before.boundary_loops - int(region_.rims.size());
   if (after.boundary_loops > wanted || after.nonmanifold_edges > before.nonmanifold_edges ||
       after.components > before.components)
@@ -275,7 +275,7 @@ Restored Mender::fill() {
     progress_.at(double(m) / tries);
     const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
-    if (options_.cut == Cut::Thesis)
+    if (options_.cut == cut::Cut::Thesis)
       return thesis_cut(f, flaw_constraints(scan_, region_, options_.constraint_distance).keep, far_from_scan(f.mesh));
     if (paste_into(scan_, region_.rims, f, out)) return out;
   }
@@ -295,26 +295,27 @@ Restored Mender::restore() {
     progress_.at(double(m) / tries);
     const Fit f = fit(m, target);
     if (f.mesh.faces.empty()) continue;
-    if (options_.cut == Cut::Thesis) return thesis_cut(f, constraints.keep, near_centre(f.mesh));
+    if (options_.cut == cut::Cut::Thesis) return thesis_cut(f, constraints.keep, near_centre(f.mesh));
     const std::vector<char> replaced = cut_out_flaw(scan_, region_, constraints, f.mesh);
     std::vector<char> stays(replaced.size());
     for (std::size_t k = 0; k < stays.size(); ++k) stays[k] = !replaced[k];
     if (std::find(stays.begin(), stays.end(), 1) == stays.end()) continue;
     std::vector<int> old_vertex;
-    const Mesh open = take_faces(scan_, stays, &old_vertex);
+    const Mesh open = mesh::take_faces(scan_, stays, &old_vertex);
     // Rims that the cut has opened.
     std::vector<char> beside(scan_.vertices.size(), 0);
     for (int k = 0; k < scan_.face_count(); ++k)
       if (replaced[k])
         for (int v : scan_.faces[k]) beside[v] = 1;
-    std::vector<Loop> rims;
-    for (const Loop& l : find_rims(open))
+    std::vector<mesh::Loop> rims;
+    for (const mesh::Loop& l : find_rims(open))
       if (std::any_of(l.vertices.begin(), l.vertices.end(), [&](int v) { return beside[old_vertex[v]] != 0; }))
         rims.push_back(l);
     if (rims.empty()) continue;
     // The longest first: the patch that fills it may reach the others.
-    std::stable_sort(rims.begin(), rims.end(),
-                     [&](const Loop& a, const Loop& b) { return loop_length(open, a) > loop_length(open, b); });
+    std::stable_sort(rims.begin(), rims.end(), [&](const mesh::Loop& a, const mesh::Loop& b) {
+      return mesh::loop_length(open, a) > mesh::loop_length(open, b);
+    });
     if (paste_into(open, rims, f, out)) return out;
   }
   throw UserError(
@@ -344,4 +345,4 @@ Restored fill_hole(const Mesh& scan, const Region& region, const std::vector<Pla
   return Mender(scan, region, models, options, progress).fill();
 }
 
-}  // namespace parts
+}  // namespace parts::mend

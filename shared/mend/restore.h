@@ -9,7 +9,7 @@
 #include "parts/mend/region.h"
 #include "parts/seam/seam.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// What mends a scan: a model in the scan's place and size, as the search left it.
 struct PlacedModel {
@@ -25,9 +25,9 @@ struct RestoreOptions {
   bool fit_to_rim = true;            ///< bend the model onto the scan around the region; false: as it is (thesis)
   int tries = 5;                     ///< of so many models the first that closes what was opened is the base
   int blend = 16;                    ///< how many of the models are blended, at most; 1 = the base alone
-  Cut cut = Cut::Refined;            ///< Thesis: compose() with the constraints of Fig. 7
+  cut::Cut cut = cut::Cut::Refined;  ///< Thesis: compose() with the constraints of Fig. 7
   int resolution = 0;                ///< of the thesis' cut
-  SeamSmoothing smoothing;           ///< distance 0 = two edges of the rim
+  seam::SeamSmoothing smoothing;     ///< distance 0 = two edges of the rim
   int threads = 0;                   ///< 0 = all cores; the result does not depend on it
 };
 
@@ -63,4 +63,4 @@ Restored restore_surface(const Mesh& scan, const Region& region, const std::vect
 Restored fill_hole(const Mesh& scan, const Region& region, const std::vector<PlacedModel>& models,
                    const RestoreOptions& options, Progress& progress);
 
-}  // namespace parts
+}  // namespace parts::mend

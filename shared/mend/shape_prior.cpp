@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-namespace parts {
+namespace parts::mend {
 
 ShapePrior::ShapePrior(const std::vector<std::vector<Vec3>>& shapes, const std::vector<double>& weight, double size)
     : mean_(shapes[0].size(), Vec3::Zero()),
@@ -46,4 +46,4 @@ std::vector<Vec3> ShapePrior::given(const std::vector<PlaneObservation>& seen) c
   return shape;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// A vertex seen to lie in a plane: the surface there is known, where on it the vertex lies is not.
 struct PlaneObservation {
@@ -41,4 +41,4 @@ class ShapePrior {
   double size_;
 };
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -6,7 +6,7 @@
 
 #include "parts/base/disjoint_sets.h"
 
-namespace parts {
+namespace parts::mend {
 
 struct SmoothField::Solver {
   using Matrix = Eigen::SparseMatrix<double>;
@@ -96,4 +96,4 @@ std::vector<Vec3> SmoothField::operator()(const std::vector<Vec3>& target, const
   return field;
 }
 
-}  // namespace parts
+}  // namespace parts::mend

@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mend {
 
 /// Smooth vector fields over the vertices of a surface, known only here and
 /// there: the field u that minimises
@@ -31,4 +31,4 @@ class SmoothField {
   std::unique_ptr<Solver> solver_;
 };
 
-}  // namespace parts
+}  // namespace parts::mend

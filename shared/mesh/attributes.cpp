@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace parts {
+namespace parts::mesh {
 namespace {
 
 constexpr Color kWhite{255, 255, 255, 255};
@@ -151,4 +151,4 @@ void update_normals(Mesh& mesh) {
   for (std::size_t v = 0; v < sum.size(); ++v) mesh.vertex_normal[v] = sum[v].normalized().cast<float>();
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -3,7 +3,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 // Changing a mesh so that every attribute goes with what it belongs to.
 
@@ -33,4 +33,4 @@ void flip_orientation(Mesh& mesh);
 /// Area-weighted vertex normals from the faces.
 void update_normals(Mesh& mesh);
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// One side of a face: from vertex `from` to vertex `to` in the face's order.
 struct HalfEdge {
@@ -51,4 +51,4 @@ void for_each_mesh_edge(const std::vector<HalfEdge>& edges, const Visit& visit) 
   }
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

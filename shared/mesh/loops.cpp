@@ -5,7 +5,7 @@
 
 #include "parts/mesh/edges.h"
 
-namespace parts {
+namespace parts::mesh {
 
 std::vector<Loop> trace_loops(const std::vector<std::array<int, 2>>& half_edges) {
   std::unordered_map<int, std::vector<int>> leaving;  // vertex -> half-edges, last first
@@ -113,4 +113,4 @@ std::vector<std::array<int, 2>> match_loops(const Mesh& mesh, const std::vector<
   return pairs;
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

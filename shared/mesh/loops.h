@@ -3,7 +3,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// A border contour: vertices in the direction of the faces' half-edges.
 /// Closed, or a chain that ends on a boundary that the input had.
@@ -28,4 +28,4 @@ double loop_length(const Mesh& mesh, const Loop& loop);
 std::vector<std::array<int, 2>> match_loops(const Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b,
                                             double max_gap, double& gap);
 
-}  // namespace parts
+}  // namespace parts::mesh

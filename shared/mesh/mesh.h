@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace parts {
+namespace parts::mesh {
 
 using Vec3 = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
@@ -55,4 +55,13 @@ struct Mesh {
   }
 };
 
+}  // namespace parts::mesh
+
+namespace parts {  // the words of every room
+using mesh::Box;
+using mesh::Color;
+using mesh::Mesh;
+using mesh::Triangle;
+using mesh::Vec3;
+using mesh::Wedges;
 }  // namespace parts

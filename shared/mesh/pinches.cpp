@@ -7,7 +7,7 @@
 #include "parts/base/disjoint_sets.h"
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::mesh {
 
 std::vector<int> split_pinches(Mesh& mesh, const std::vector<char>& asked) {
   std::unordered_map<int, std::vector<int>> stars;
@@ -36,4 +36,4 @@ std::vector<int> split_pinches(Mesh& mesh, const std::vector<char>& asked) {
   return copied;
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// Gives each fan of faces around the vertices that are asked about a vertex of
 /// its own, at the same place: where two fans touch in one, a surface is no manifold.
@@ -13,4 +13,4 @@ namespace parts {
 /// @return the vertex that each new one is a copy of; new ones follow the old
 std::vector<int> split_pinches(Mesh& mesh, const std::vector<char>& asked);
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace parts {
+namespace parts::mesh {
 namespace {
 
 constexpr double kEpsilon = 0x1p-53;
@@ -109,4 +109,4 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   return turn(a, b, c, 0) == 0 && turn(a, b, c, 1) == 0 && turn(a, b, c, 2) == 0;
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

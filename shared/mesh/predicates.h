@@ -3,7 +3,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// On which side of the plane through a, b, c the point d lies: 1 where the
 /// triangle looks clockwise from d (behind it), -1 in front, 0 on the plane.
@@ -19,4 +19,4 @@ int turn(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
 /// Whether a, b, c lie on one line. Exact.
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace parts
+}  // namespace parts::mesh

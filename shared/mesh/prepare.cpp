@@ -9,7 +9,7 @@
 #include "parts/mesh/edges.h"
 #include "parts/mesh/pinches.h"
 
-namespace parts {
+namespace parts::mesh {
 
 std::vector<int> first_at_same_place(const Mesh& mesh) {
   const auto less = [&](int a, int b) {
@@ -128,4 +128,4 @@ Prepared prepare(const Mesh& mesh) {
   return p;
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -3,7 +3,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// Per vertex: the first vertex with the same position, bit for bit.
 std::vector<int> first_at_same_place(const Mesh& mesh);
@@ -27,4 +27,4 @@ struct Prepared {
 /// closed. Attributes follow; of welded vertices the first's stay.
 Prepared prepare(const Mesh& mesh);
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -8,7 +8,7 @@
 #include "parts/base/parallel.h"
 #include "parts/mesh/predicates.h"
 
-namespace parts {
+namespace parts::mesh {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -234,4 +234,4 @@ long self_intersections(const Mesh& mesh, long limit, int threads) {
   return long(intersecting_faces(mesh, limit, threads).size());
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// Pairs of faces that touch or cross where a clean surface would not: faces
 /// without a common corner that have a point in common; with one, that have
@@ -21,4 +21,4 @@ std::vector<std::array<int, 2>> intersecting_faces(const Mesh& mesh, long limit 
 /// How many pairs, up to the limit (0 = all).
 long self_intersections(const Mesh& mesh, long limit = 0, int threads = 0);
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -7,7 +7,7 @@
 #include "parts/mesh/edges.h"
 #include "parts/mesh/predicates.h"
 
-namespace parts {
+namespace parts::mesh {
 namespace {
 
 bool repeats(const Triangle& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; }
@@ -174,4 +174,4 @@ std::string to_string(const MeshCheck& c) {
   return text;
 }
 
-}  // namespace parts
+}  // namespace parts::mesh

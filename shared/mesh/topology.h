@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::mesh {
 
 /// Which side of which face lies across each half-edge. Half-edge 3 f + k goes
 /// from corner k of face f to its corner k + 1. Faces with a repeated vertex
@@ -56,4 +56,4 @@ MeshCheck check(const Mesh& mesh);
 /// One "name: value" a line.
 std::string to_string(const MeshCheck& c);
 
-}  // namespace parts
+}  // namespace parts::mesh

@@ -9,7 +9,7 @@
 #include "parts/mesh/edges.h"
 #include "parts/mesh/prepare.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 using Vec2 = Eigen::Vector2d;
@@ -158,11 +158,11 @@ class Unfolding {
   void find_neighbours() {
     Mesh welded;
     welded.vertices = mesh_.vertices;
-    const std::vector<int> same = first_at_same_place(mesh_);
+    const std::vector<int> same = mesh::first_at_same_place(mesh_);
     for (const Triangle& f : mesh_.faces) welded.faces.push_back({same[f[0]], same[f[1]], same[f[2]]});
-    const std::vector<HalfEdge> edges = sorted_half_edges(welded);
+    const std::vector<mesh::HalfEdge> edges = mesh::sorted_half_edges(welded);
     const auto each_pair = [&](const auto& visit) {
-      for_each_mesh_edge(edges, [&](auto first, auto last) {
+      mesh::for_each_mesh_edge(edges, [&](auto first, auto last) {
         for (auto e = first; e + 1 < last; ++e)
           if (e->face != (e + 1)->face)
             visit(e->face, (e + 1)->face, (mesh_.vertices[e->from] - mesh_.vertices[e->to]).norm());
@@ -353,4 +353,4 @@ std::string texture_coordinates_flaw(const Mesh& mesh, int size) {
   return double(map.conflicts) > 0.01 * double(covered) ? "overlapping" : "";
 }
 
-}  // namespace parts
+}  // namespace parts::render

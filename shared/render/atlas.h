@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::render {
 
 /// Which point of a surface each texel of a square texture shows, row by row
 /// from the top; uv (0, 0) is the texture's lower left corner.
@@ -38,4 +38,4 @@ Atlas make_atlas(const Mesh& mesh, int size);
 /// surface. @return empty where they can
 std::string texture_coordinates_flaw(const Mesh& mesh, int size);
 
-}  // namespace parts
+}  // namespace parts::render

@@ -8,7 +8,7 @@
 
 #include "parts/base/error.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 std::vector<std::string> split(const std::string& text, char at) {
@@ -93,4 +93,4 @@ Camera orthographic_camera(const Eigen::Matrix3d& rotation, const Box& box, int 
   return camera;
 }
 
-}  // namespace parts
+}  // namespace parts::render

@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::render {
 
 /// From where a model is seen, in degrees. Yaw turns the viewer around the up
 /// axis, counter-clockwise from above (90 = the model's left side); pitch lifts
@@ -52,4 +52,4 @@ Eigen::Matrix3d view_rotation(const View& view, const Vec3& up, const Vec3& fron
 Camera orthographic_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height,
                            double margin = 0.05);
 
-}  // namespace parts
+}  // namespace parts::render

@@ -11,7 +11,7 @@
 #include "parts/mesh/attributes.h"
 #include "parts/render/pixel_faces.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 constexpr double kJumpShare = 0.05;      // of the depth range, at which a surface is torn
@@ -207,7 +207,7 @@ class Builder {
   }
 
   Mesh finished() {
-    update_normals(mesh_);
+    mesh::update_normals(mesh_);
     return std::move(mesh_);
   }
 
@@ -275,4 +275,4 @@ DepthMesh depth_to_mesh(const cv::Mat& depth, const cv::Mat& back, const Camera&
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::render

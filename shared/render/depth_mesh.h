@@ -7,7 +7,7 @@
 #include "parts/mesh/mesh.h"
 #include "parts/render/camera.h"
 
-namespace parts {
+namespace parts::render {
 
 struct DepthMeshOptions {
   /// Depth between neighbouring pixels at which the surface is torn, world
@@ -48,4 +48,4 @@ DepthMesh depth_to_mesh(const cv::Mat& depth, const cv::Mat& back, const Camera&
 /// @param focal       pixels; 0 = orthographic
 Camera raster_camera(cv::Size size, double pixel_size, double focal);
 
-}  // namespace parts
+}  // namespace parts::render

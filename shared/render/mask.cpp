@@ -3,7 +3,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace parts {
+namespace parts::render {
 
 cv::Point2d centroid(const cv::Mat& mask) {
   const cv::Moments m = cv::moments(mask, true);
@@ -11,4 +11,4 @@ cv::Point2d centroid(const cv::Mat& mask) {
   return {m.m10 / m.m00, m.m01 / m.m00};
 }
 
-}  // namespace parts
+}  // namespace parts::render

@@ -6,7 +6,7 @@
 
 #include "parts/base/error.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 constexpr double kFilmMm = 36;  // width of the film that focal lengths in mm refer to
@@ -15,8 +15,8 @@ constexpr int kOrthographic = 1;
 }  // namespace
 
 // MeshLab's rows run upwards from the bottom of the image.
-MlpCamera to_mlp(const Camera& camera, double distance) {
-  MlpCamera out;
+io::MlpCamera to_mlp(const Camera& camera, double distance) {
+  io::MlpCamera out;
   out.given = true;
   out.translation = -camera.eye;
   out.rotation = camera.rotation;
@@ -33,7 +33,7 @@ MlpCamera to_mlp(const Camera& camera, double distance) {
   return out;
 }
 
-Camera from_mlp(const MlpCamera& camera, const std::string& label) {
+Camera from_mlp(const io::MlpCamera& camera, const std::string& label) {
   const std::string raster = "The raster \"" + label + "\" has ";
   const std::string remedy = "; build the database again, or align the raster in MeshLab.";
   if (!camera.given) throw UserError(raster + "no camera" + remedy);
@@ -58,4 +58,4 @@ Camera from_mlp(const MlpCamera& camera, const std::string& label) {
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::render

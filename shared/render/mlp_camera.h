@@ -4,14 +4,14 @@
 #include "parts/io/mlp_project.h"
 #include "parts/render/camera.h"
 
-namespace parts {
+namespace parts::render {
 
 /// A camera as projects have it. Orthographic ones (CameraType 1) keep world
 /// units a pixel as their pixel size; MeshLab shows both through its focal
 /// length, which is given for an object at `distance`.
-MlpCamera to_mlp(const Camera& camera, double distance);
+io::MlpCamera to_mlp(const Camera& camera, double distance);
 
 /// @throws UserError  no camera is given, or no pixel size, viewport or focal length
-Camera from_mlp(const MlpCamera& camera, const std::string& label);
+Camera from_mlp(const io::MlpCamera& camera, const std::string& label);
 
-}  // namespace parts
+}  // namespace parts::render

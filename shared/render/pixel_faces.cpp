@@ -5,7 +5,7 @@
 
 #include "parts/base/disjoint_sets.h"
 
-namespace parts {
+namespace parts::render {
 
 long PixelFaces::count() const {
   long n = 0;
@@ -136,4 +136,4 @@ int PixelFaces::drop_strips(const std::vector<char>& marked) {
   return dropped;
 }
 
-}  // namespace parts
+}  // namespace parts::render

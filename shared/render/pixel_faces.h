@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace parts {
+namespace parts::render {
 
 /// Triangles between the pixels of a raster: at most two in each block of four
 /// neighbours a b / c d, on either diagonal. Pixels are numbered row by row;
@@ -78,4 +78,4 @@ class PixelFaces {
   std::vector<std::uint8_t> blocks_;
 };
 
-}  // namespace parts
+}  // namespace parts::render

@@ -8,7 +8,7 @@
 #include "parts/base/parallel.h"
 #include "parts/render/shade.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 /// Rounds to 1/4096 pixel. Then the edge functions below are exact in images
@@ -123,4 +123,4 @@ Rendering render(const Mesh& mesh, const Textures& textures, const Camera& camer
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::render

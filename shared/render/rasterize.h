@@ -7,7 +7,7 @@
 #include "parts/mesh/mesh.h"
 #include "parts/render/camera.h"
 
-namespace parts {
+namespace parts::render {
 
 /// A mesh's images as 8-bit BGR, each followed by its halves (a pyramid); an
 /// image that is missing or unreadable is an empty pyramid.
@@ -45,4 +45,4 @@ struct Rendering {
 /// left out.
 Rendering render(const Mesh& mesh, const Textures& textures, const Camera& camera, const RenderOptions& options);
 
-}  // namespace parts
+}  // namespace parts::render

@@ -7,7 +7,7 @@
 #include "parts/base/parallel.h"
 #include "parts/render/surface_color.h"
 
-namespace parts {
+namespace parts::render {
 
 namespace {
 
@@ -141,4 +141,4 @@ void shade(const Mesh& mesh, const Textures& textures, const Camera& camera, con
   });
 }
 
-}  // namespace parts
+}  // namespace parts::render

@@ -5,7 +5,7 @@
 
 #include "parts/render/rasterize.h"
 
-namespace parts {
+namespace parts::render {
 
 /// A projected vertex: pixels and depth; x is NaN where it cannot be seen.
 struct ScreenPoint {
@@ -16,4 +16,4 @@ struct ScreenPoint {
 void shade(const Mesh& mesh, const Textures& textures, const Camera& camera, const RenderOptions& options,
            const std::vector<ScreenPoint>& points, Rendering& out);
 
-}  // namespace parts
+}  // namespace parts::render

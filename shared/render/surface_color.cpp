@@ -9,7 +9,7 @@
 
 #include "parts/render/rasterize.h"
 
-namespace parts {
+namespace parts::render {
 
 Textures load_textures(const Mesh& mesh) {
   Textures textures;
@@ -88,4 +88,4 @@ bool has_colors(const Mesh& mesh, const Textures& textures) {
   return false;
 }
 
-}  // namespace parts
+}  // namespace parts::render

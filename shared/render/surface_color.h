@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::render {
 
 struct Textures;
 
@@ -24,4 +24,4 @@ Eigen::Vector3f surface_color(const Mesh& mesh, const Textures& textures, int fa
 /// Whether a mesh has colours at all: a texture that could be read, vertex or face colours.
 bool has_colors(const Mesh& mesh, const Textures& textures);
 
-}  // namespace parts
+}  // namespace parts::render

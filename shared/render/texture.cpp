@@ -8,7 +8,7 @@
 
 #include "parts/base/error.h"
 
-namespace parts {
+namespace parts::render {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,7 +30,7 @@ bool has_picture(const fs::path& file, const cv::Mat& picture) {
 
 }  // namespace
 
-bool shows_as_texture(const std::string& path, const Image& image) {
+bool shows_as_texture(const std::string& path, const io::Image& image) {
   std::string ending = fs::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   const char* endings[] = {".png", ".jpg", ".jpeg", ".bmp"};
@@ -65,7 +65,7 @@ std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const Textu
     for (const std::string& input : target.inputs)
       if (!input.empty() && fs::equivalent(input, target.file, error))
         throw UserError("The texture would replace the input \"" + input + "\"; give another TextureFile.");
-    write_image(picture, target.file);
+    io::write_image(picture, target.file);
     return fs::absolute(target.file).lexically_normal().string();
   }
   const fs::path base = fs::absolute(target.beside);
@@ -76,9 +76,9 @@ std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const Textu
       if (has_picture(file, picture)) return file.string();
       continue;
     }
-    write_image(picture, file.string());
+    io::write_image(picture, file.string());
     return file.string();
   }
 }
 
-}  // namespace parts
+}  // namespace parts::render

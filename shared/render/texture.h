@@ -7,12 +7,12 @@
 
 #include "parts/io/raster_io.h"
 
-namespace parts {
+namespace parts::render {
 
 /// Whether the host can show an image file on a mesh as it is: a PNG, JPEG or
 /// BMP of 8 bits a channel, held upright, with nothing transparent.
 /// @param image  what read_image(path) gave
-bool shows_as_texture(const std::string& path, const Image& image);
+bool shows_as_texture(const std::string& path, const io::Image& image);
 
 /// Where a texture is written and what it must not replace.
 struct TextureTarget {
@@ -32,4 +32,4 @@ std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const Textu
 /// The same as an image in memory.
 cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask);
 
-}  // namespace parts
+}  // namespace parts::render

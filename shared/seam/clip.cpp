@@ -8,7 +8,7 @@
 #include "parts/base/parallel.h"
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::seam {
 namespace {
 
 constexpr double kPinned = 0.05;  // the least value at a vertex of a pinned face
@@ -22,7 +22,7 @@ struct Work {
   std::vector<double> value;  ///< per vertex
 
   int add(int parent, const Triangle& v, const std::array<Vec3, 3>& at) {
-    add_face_within(mesh, parent, v, at);
+    mesh::add_face_within(mesh, parent, v, at);
     source.push_back(source[parent]);
     pinned.push_back(pinned[parent]);
     dead.push_back(0);
@@ -121,7 +121,7 @@ void refine(Work& w, const ClipField& field, int threads) {
           const int a = t[k], b = t[(k + 1) % 3];
           if (length(a, b) <= enough || stays(a, b)) continue;
           if (const auto [it, fresh] = mid.try_emplace(edge_key(a, b), -1); fresh) {
-            it->second = add_vertex_between(w.mesh, std::min(a, b), std::max(a, b), 0.5);
+            it->second = mesh::add_vertex_between(w.mesh, std::min(a, b), std::max(a, b), 0.5);
             w.value.push_back(field.value(w.mesh.vertices.back()));
           }
         }
@@ -224,7 +224,7 @@ Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const Cli
   const int faces = w.mesh.face_count();
   const auto point = [&](int inside, int outside) {
     const auto [it, fresh] = cut.try_emplace(edge_key(inside, outside), -1);
-    if (fresh) it->second = add_vertex_between(w.mesh, inside, outside, root(w, field, inside, outside));
+    if (fresh) it->second = mesh::add_vertex_between(w.mesh, inside, outside, root(w, field, inside, outside));
     return it->second;
   };
   const auto share = [&](int f, int k, int p) {  // barycentric place of point p on the edge that starts at corner k
@@ -266,7 +266,7 @@ Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const Cli
 
   Clipped out;
   std::vector<int> old_vertex, old_face, number(w.mesh.vertices.size(), -1);
-  out.mesh = take_faces(w.mesh, keep, &old_vertex, &old_face);
+  out.mesh = mesh::take_faces(w.mesh, keep, &old_vertex, &old_face);
   for (int f : old_face) out.source_face.push_back(w.source[f]);
   for (std::size_t v = 0; v < old_vertex.size(); ++v) {
     number[old_vertex[v]] = int(v);
@@ -276,4 +276,4 @@ Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const Cli
   return out;
 }
 
-}  // namespace parts
+}  // namespace parts::seam

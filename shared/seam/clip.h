@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::seam {
 
 /// What decides where a model is clipped.
 struct ClipField {
@@ -29,4 +29,4 @@ struct Clipped {
 /// @param pinned  per face: 1 = kept whole, -1 = dropped unless a neighbour is kept, 0 = by the field
 Clipped clip(const Mesh& mesh, const std::vector<signed char>& pinned, const ClipField& field, int threads);
 
-}  // namespace parts
+}  // namespace parts::seam

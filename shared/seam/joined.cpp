@@ -7,12 +7,12 @@
 #include "parts/seam/stitch.h"
 #include "parts/seam/untangle.h"
 
-namespace parts {
+namespace parts::seam {
 
-Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipped& cb) {
+Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, const Clipped& cb) {
   Joined j;
   j.mesh = ca.mesh;
-  append(j.mesh, cb.mesh);
+  mesh::append(j.mesh, cb.mesh);
   const int first_b = ca.mesh.vertex_count();
   j.seam = ca.cut_vertex;
   for (char cut : cb.cut_vertex) j.seam.push_back(cut ? kBorderB : kNoSeam);
@@ -20,7 +20,7 @@ Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipp
   j.like.assign(j.mesh.vertices.size(), -1);
   for (int f = 0; f < j.mesh.face_count(); ++f) {
     const bool from_b = f >= ca.mesh.face_count();
-    const Model& model = from_b ? b : a;
+    const cut::Model& model = from_b ? b : a;
     const int source = from_b ? cb.source_face[f - ca.mesh.face_count()] : ca.source_face[f];
     j.tag.push_back(from_b);
     for (int v : j.mesh.faces[f]) {
@@ -29,10 +29,10 @@ Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipp
       j.closed[v] = model.prepared.closed[model.prepared.component[source]];
     }
   }
-  j.loops_a = trace_loops(ca.border);
+  j.loops_a = mesh::trace_loops(ca.border);
   std::vector<std::array<int, 2>> border_b = cb.border;
   for (auto& e : border_b) e[0] += first_b, e[1] += first_b;
-  j.loops_b = trace_loops(border_b);
+  j.loops_b = mesh::trace_loops(border_b);
   return j;
 }
 
@@ -43,7 +43,7 @@ bool agree_on_orientation(Joined& j, std::vector<std::array<int, 2>>& pairs) {
   double balance = 0, length = 0;
   const auto agreement = [&](const auto& p) { return direction_agreement(j.mesh, j.loops_a[p[0]], j.loops_b[p[1]]); };
   for (const auto& p : pairs) {
-    const double l = loop_length(j.mesh, j.loops_a[p[0]]);
+    const double l = mesh::loop_length(j.mesh, j.loops_a[p[0]]);
     balance += l * agreement(p), length += l;
   }
   const bool turn = balance > 0.5 * length;
@@ -57,7 +57,7 @@ bool agree_on_orientation(Joined& j, std::vector<std::array<int, 2>>& pairs) {
       }
     for (std::size_t v = 0; v < j.mesh.vertex_normal.size(); ++v)
       if (of_b[v]) j.mesh.vertex_normal[v] = -j.mesh.vertex_normal[v];
-    for (Loop& l : j.loops_b) std::reverse(l.vertices.begin(), l.vertices.end());
+    for (mesh::Loop& l : j.loops_b) std::reverse(l.vertices.begin(), l.vertices.end());
   }
   // What still runs the wrong way would make a twisted strip.
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& p) { return agreement(p) > 0; }), pairs.end());
@@ -67,19 +67,19 @@ bool agree_on_orientation(Joined& j, std::vector<std::array<int, 2>>& pairs) {
 }  // namespace
 
 double stitch_parts(Joined& j, double max_gap, SeamReport& report) {
-  std::vector<std::array<int, 2>> pairs = match_loops(j.mesh, j.loops_a, j.loops_b, max_gap, report.seam_gap);
+  std::vector<std::array<int, 2>> pairs = mesh::match_loops(j.mesh, j.loops_a, j.loops_b, max_gap, report.seam_gap);
   report.reversed_b = agree_on_orientation(j, pairs);
   std::vector<char> joined_a(j.loops_a.size(), 0), joined_b(j.loops_b.size(), 0);
   for (const auto& [i, k] : pairs) {
     joined_a[i] = joined_b[k] = 1;
-    report.seam_length += loop_length(j.mesh, j.loops_a[i]);
+    report.seam_length += mesh::loop_length(j.mesh, j.loops_a[i]);
     zipper(j.mesh, j.loops_a[i], j.loops_b[k], j.like);
   }
   report.loops_joined = int(pairs.size());
   // What did not pair off is zippered by pieces. A contour with none opposite:
   // a closed model stays closed.
-  const auto rest = [](const std::vector<Loop>& loops, const std::vector<char>& joined) {
-    std::vector<Loop> r;
+  const auto rest = [](const std::vector<mesh::Loop>& loops, const std::vector<char>& joined) {
+    std::vector<mesh::Loop> r;
     for (std::size_t i = 0; i < loops.size(); ++i)
       if (!joined[i]) r.push_back(loops[i]);
     return r;
@@ -88,8 +88,8 @@ double stitch_parts(Joined& j, double max_gap, SeamReport& report) {
       zipper_pieces(j.mesh, rest(j.loops_a, joined_a), rest(j.loops_b, joined_b), max_gap, j.like);
   report.pieces_joined = pieces.strips, report.seam_length += pieces.length;
   double unmatched = 0;
-  for (const Loop& loop : pieces.open) {
-    unmatched += loop_length(j.mesh, loop);
+  for (const mesh::Loop& loop : pieces.open) {
+    unmatched += mesh::loop_length(j.mesh, loop);
     bool closed = loop.closed;
     for (int v : loop.vertices) closed = closed && j.closed[v];
     if (closed)
@@ -101,14 +101,14 @@ double stitch_parts(Joined& j, double max_gap, SeamReport& report) {
   return unmatched;
 }
 
-long finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothing, int threads) {
-  if (cut == Cut::Refined)
+long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
+  if (cut == cut::Cut::Refined)
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
   else
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.2 * voxel, 0.2 * voxel});
-  for (int v : split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
+  for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
-  if (cut == Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
+  if (cut == cut::Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
               smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);
@@ -119,7 +119,7 @@ long finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothin
   if (j.mesh.vertex_normal.empty()) return crossings;
   // Normals are the inputs' own but around the seam.
   std::vector<Eigen::Vector3f> normals = j.mesh.vertex_normal;
-  update_normals(j.mesh);
+  mesh::update_normals(j.mesh);
   std::vector<char> changed = j.seam;
   for (const Triangle& f : j.mesh.faces) {
     bool any = false;
@@ -132,4 +132,4 @@ long finish_seam(Joined& j, double voxel, Cut cut, const SeamSmoothing& smoothin
   return crossings;
 }
 
-}  // namespace parts
+}  // namespace parts::seam

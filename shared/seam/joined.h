@@ -7,7 +7,7 @@
 #include "parts/seam/clip.h"
 #include "parts/seam/seam.h"
 
-namespace parts {
+namespace parts::seam {
 
 /// The two clipped models in one mesh, with what is known of its elements.
 struct Joined {
@@ -17,11 +17,11 @@ struct Joined {
   std::vector<char> fixed;   ///< per vertex: of a kept face
   std::vector<int> like;     ///< per vertex: a face at it
   std::vector<char> closed;  ///< per vertex: its input component had no boundary
-  std::vector<Loop> loops_a, loops_b;
+  std::vector<mesh::Loop> loops_a, loops_b;
 };
 
 /// Puts the clipped models side by side.
-Joined join_parts(const Model& a, const Clipped& ca, const Model& b, const Clipped& cb);
+Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, const Clipped& cb);
 
 /// Zippers borders that face each other, no farther apart than max_gap, turning
 /// B over first if it faces the other way; closes what remains of models that
@@ -32,6 +32,6 @@ double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 /// Removes the seam's slivers, evens it (Refined), smooths it, parts faces that
 /// cross, and mends the normals around it.
 /// @return pairs of faces at the seam that still cross
-long finish_seam(Joined& joined, double voxel, Cut cut, const SeamSmoothing& smoothing, int threads);
+long finish_seam(Joined& joined, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads);
 
-}  // namespace parts
+}  // namespace parts::seam

@@ -7,7 +7,7 @@
 
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::seam {
 namespace {
 
 Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
@@ -227,7 +227,7 @@ void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, st
   zone.collapse_short(shortest);
   zone.flip_badly_shaped(4);
   std::vector<int> old_vertex, old_face;
-  mesh = take_faces(mesh, zone.alive(), &old_vertex, &old_face);
+  mesh = mesh::take_faces(mesh, zone.alive(), &old_vertex, &old_face);
   compact(seam, old_vertex), compact(fixed, old_vertex), compact(tag, old_face);
 }
 
@@ -314,4 +314,4 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
   }
 }
 
-}  // namespace parts
+}  // namespace parts::seam

@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::seam {
 
 /// How the seam is smoothed after stitching (thesis 3.2.5): positions are
 /// averaged with their neighbours'.
@@ -52,4 +52,4 @@ void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char
 void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
                  int iterations, double weight);
 
-}  // namespace parts
+}  // namespace parts::seam

@@ -7,7 +7,7 @@
 
 #include "parts/mesh/attributes.h"
 
-namespace parts {
+namespace parts::seam {
 namespace {
 
 /// Indices (in a, in b) of the nearest vertices of two polylines.
@@ -63,7 +63,7 @@ std::vector<char> shortest_strip(const Mesh& mesh, const std::vector<int>& a, co
 }
 
 /// The contour as an open polyline; a closed one from vertex `start` around to it.
-std::vector<int> unrolled(const Loop& loop, int start) {
+std::vector<int> unrolled(const mesh::Loop& loop, int start) {
   std::vector<int> v = loop.vertices;
   if (!loop.closed) return v;
   std::rotate(v.begin(), v.begin() + start, v.end());
@@ -74,7 +74,7 @@ std::vector<int> unrolled(const Loop& loop, int start) {
 /// A contour by arc length.
 class Polyline {
  public:
-  Polyline(const Mesh& mesh, const Loop& loop) : closed_(loop.closed) {
+  Polyline(const Mesh& mesh, const mesh::Loop& loop) : closed_(loop.closed) {
     for (int v : loop.vertices) points_.push_back(mesh.vertices[v]);
     if (closed_) points_.push_back(points_.front());
     at_.push_back(0);
@@ -113,7 +113,7 @@ class Polyline {
 
 }  // namespace
 
-double direction_agreement(const Mesh& mesh, const Loop& a, const Loop& b) {
+double direction_agreement(const Mesh& mesh, const mesh::Loop& a, const mesh::Loop& b) {
   constexpr int kStarts = 32;
   const Polyline pa(mesh, a), pb(mesh, b);
   double sum = 0;
@@ -131,10 +131,10 @@ void zipper_lines(Mesh& mesh, const std::vector<int>& p, const std::vector<int>&
   int i = 0, j = 0;
   for (const char p_advances : shortest_strip(mesh, p, q)) {
     if (p_advances) {
-      add_face_like(mesh, like[p[i]], {p[i + 1], p[i], q[j]});
+      mesh::add_face_like(mesh, like[p[i]], {p[i + 1], p[i], q[j]});
       ++i;
     } else {
-      add_face_like(mesh, like[q[j]], {q[j], q[j + 1], p[i]});
+      mesh::add_face_like(mesh, like[q[j]], {q[j], q[j + 1], p[i]});
       ++j;
     }
   }
@@ -145,7 +145,7 @@ struct Place {
   int loop, at;
 };
 
-std::vector<Place> places(const std::vector<Loop>& loops) {
+std::vector<Place> places(const std::vector<mesh::Loop>& loops) {
   std::vector<Place> all;
   for (int l = 0; l < int(loops.size()); ++l)
     for (int k = 0; k < loops[l].size(); ++k) all.push_back({l, k});
@@ -153,7 +153,7 @@ std::vector<Place> places(const std::vector<Loop>& loops) {
 }
 
 /// The contour's vertices from place `from` on to place `to` (once around if they are the same).
-std::vector<int> arc(const Loop& loop, int from, int to) {
+std::vector<int> arc(const mesh::Loop& loop, int from, int to) {
   std::vector<int> v{loop.vertices[from]};
   do {
     from = (from + 1) % loop.size();
@@ -164,18 +164,18 @@ std::vector<int> arc(const Loop& loop, int from, int to) {
 
 }  // namespace
 
-void zipper(Mesh& mesh, const Loop& a, const Loop& b, const std::vector<int>& like) {
-  Loop back = b;
+void zipper(Mesh& mesh, const mesh::Loop& a, const mesh::Loop& b, const std::vector<int>& like) {
+  mesh::Loop back = b;
   std::reverse(back.vertices.begin(), back.vertices.end());
   const auto [i, j] = nearest_pair(mesh, a.vertices, back.vertices);
   zipper_lines(mesh, unrolled(a, i), unrolled(back, j), like);
 }
 
-ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::vector<Loop>& b, double max_gap,
-                             const std::vector<int>& like) {
+ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<mesh::Loop>& a, const std::vector<mesh::Loop>& b,
+                             double max_gap, const std::vector<int>& like) {
   const std::vector<Place> in_a = places(a), in_b = places(b);
-  const auto nearest = [&](const std::vector<Place>& from, const std::vector<Loop>& from_loops,
-                           const std::vector<Place>& to, const std::vector<Loop>& to_loops) {
+  const auto nearest = [&](const std::vector<Place>& from, const std::vector<mesh::Loop>& from_loops,
+                           const std::vector<Place>& to, const std::vector<mesh::Loop>& to_loops) {
     std::vector<int> found;
     for (const Place& p : from) {
       const Vec3& x = mesh.vertices[from_loops[p.loop].vertices[p.at]];
@@ -192,7 +192,7 @@ ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::
   const auto bridged_a = [&](int k) { return to_b[k] >= 0 && to_a[to_b[k]] == k; };
   const auto bridged_b = [&](int k) { return to_a[k] >= 0 && to_b[to_a[k]] == k; };
   // The next bridge along a contour; places of one contour are consecutive.
-  const auto next_bridge = [](const std::vector<Place>& all, const std::vector<Loop>& loops, int k,
+  const auto next_bridge = [](const std::vector<Place>& all, const std::vector<mesh::Loop>& loops, int k,
                               const auto& bridged) {
     const int size = loops[all[k].loop].size(), first = k - all[k].at;
     int at = all[k].at;
@@ -206,7 +206,7 @@ ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::
   std::vector<char> filled_a(in_a.size(), 0), filled_b(in_b.size(), 0), starts(in_a.size(), 0), ends(in_a.size(), 0);
   for (int k = 0; k < int(in_a.size()); ++k) {
     if (!bridged_a(k)) continue;
-    const Loop &la = a[in_a[k].loop], &lb = b[in_b[to_b[k]].loop];
+    const mesh::Loop &la = a[in_a[k].loop], &lb = b[in_b[to_b[k]].loop];
     if (!la.closed || !lb.closed) continue;
     const int next = next_bridge(in_a, a, k, bridged_a);
     if (next_bridge(in_b, b, to_b[next], bridged_b) != to_b[k]) continue;
@@ -218,13 +218,13 @@ ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::
       filled_b[to_b[next] - in_b[to_b[next]].at + at] = 1;
     std::reverse(q.begin(), q.end());
     zipper_lines(mesh, p, q, like);
-    ++pieces.strips, pieces.length += loop_length(mesh, {p, false});
+    ++pieces.strips, pieces.length += mesh::loop_length(mesh, {p, false});
     starts[k] = 1, ends[next] = 1;
   }
-  const auto leave_open = [&](const std::vector<Place>& all, const std::vector<Loop>& loops,
+  const auto leave_open = [&](const std::vector<Place>& all, const std::vector<mesh::Loop>& loops,
                               const std::vector<char>& filled) {
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const Loop& l = loops[all[k].loop];
+      const mesh::Loop& l = loops[all[k].loop];
       if (filled[k] || (!l.closed && all[k].at + 1 == l.size())) continue;
       open.push_back({l.vertices[all[k].at], l.vertices[(all[k].at + 1) % l.size()]});
     }
@@ -235,11 +235,11 @@ ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Loop>& a, const std::
     const int va = a[in_a[k].loop].vertices[in_a[k].at], vb = b[in_b[to_b[k]].loop].vertices[in_b[to_b[k]].at];
     open.push_back(starts[k] ? std::array<int, 2>{va, vb} : std::array<int, 2>{vb, va});
   }
-  pieces.open = trace_loops(open);
+  pieces.open = mesh::trace_loops(open);
   return pieces;
 }
 
-void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like) {
+void cap(Mesh& mesh, const mesh::Loop& loop, const std::vector<int>& like) {
   std::vector<int> ring = loop.vertices;
   // The area vector's direction says which ears are convex.
   Vec3 up = Vec3::Zero();
@@ -262,10 +262,10 @@ void cap(Mesh& mesh, const Loop& loop, const std::vector<int>& like) {
       if (score > best) best = score, ear = k;
     }
     const int u = ring[(ear + n - 1) % n], v = ring[ear], w = ring[(ear + 1) % n];
-    add_face_like(mesh, like[v], {w, v, u});
+    mesh::add_face_like(mesh, like[v], {w, v, u});
     ring.erase(ring.begin() + ear);
   }
-  if (ring.size() == 3) add_face_like(mesh, like[ring[0]], {ring[2], ring[1], ring[0]});
+  if (ring.size() == 3) mesh::add_face_like(mesh, like[ring[0]], {ring[2], ring[1], ring[0]});
 }
 
-}  // namespace parts
+}  // namespace parts::seam

@@ -10,12 +10,12 @@
 #include "parts/mesh/edges.h"
 #include "parts/mesh/self_intersections.h"
 
-namespace parts {
+namespace parts::seam {
 namespace {
 
 /// Calls visit(cell) for each cell of the grid that a face's box touches.
 template <class Visit>
-void for_each_cell(const Grid& grid, const Box& box, const Visit& visit) {
+void for_each_cell(const cut::Grid& grid, const Box& box, const Visit& visit) {
   const Vec3 low = grid.to_grid(box.min()), high = grid.to_grid(box.max());
   int from[3], to[3];
   for (int d = 0; d < 3; ++d) {
@@ -36,8 +36,8 @@ class Neighbourhood {
     for (int f = 0; f < mesh.face_count(); ++f)
       if (asked[f]) all.extend(mesh.face_box(f));
     if (all.isEmpty() || !(all.sizes().maxCoeff() > 0)) return;
-    const Grid grid = Grid::over(all, kCells);
-    VoxelSet cells(grid.count());
+    const cut::Grid grid = cut::Grid::over(all, kCells);
+    cut::VoxelSet cells(grid.count());
     for (int f = 0; f < mesh.face_count(); ++f)
       if (asked[f]) for_each_cell(grid, mesh.face_box(f), [&](std::size_t c) { cells.add(c); });
     std::vector<char> near(mesh.faces.size(), 0);
@@ -55,9 +55,9 @@ class Neighbourhood {
     local.vertices = mesh_.vertices;
     for (int f : faces_) local.faces.push_back(mesh_.faces[f]);
     std::vector<int> old_vertex;
-    local = take_faces(local, std::vector<char>(faces_.size(), 1), &old_vertex);
+    local = mesh::take_faces(local, std::vector<char>(faces_.size(), 1), &old_vertex);
     std::vector<std::array<int, 2>> pairs;
-    for (const auto& [f, g] : intersecting_faces(local, 0, threads))
+    for (const auto& [f, g] : mesh::intersecting_faces(local, 0, threads))
       if (asked_[faces_[f]] || asked_[faces_[g]]) pairs.push_back({faces_[f], faces_[g]});
     return pairs;
   }
@@ -80,7 +80,7 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
   zone.vertices.resize(mesh.vertices.size());
   for (int f = 0; f < mesh.face_count(); ++f)
     if (asked[f]) zone.faces.push_back(mesh.faces[f]);
-  for_each_mesh_edge(sorted_half_edges(zone), [&](auto first, auto last) {
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(zone), [&](auto first, auto last) {
     around[first->from].push_back(first->to), around[first->to].push_back(first->from);
     // The zone's own border runs along vertices that do not move anyway.
     if (last - first != 2) free[first->from] = free[first->to] = 0;
@@ -118,4 +118,4 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
   return least;
 }
 
-}  // namespace parts
+}  // namespace parts::seam

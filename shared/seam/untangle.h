@@ -5,7 +5,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::seam {
 
 /// Parts faces near the seam that cross others: their movable vertices are
 /// relaxed to their neighbours' mean, wider around each round, until nothing at
@@ -15,4 +15,4 @@ namespace parts {
 /// @return the pairs of crossing faces that are left, of those with a movable vertex
 long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int threads);
 
-}  // namespace parts
+}  // namespace parts::seam

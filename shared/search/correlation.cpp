@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-namespace parts {
+namespace parts::search {
 namespace {
 
 using Grid = Correlation::Grid;
@@ -156,4 +156,4 @@ std::array<Correlation::Best, 2> Correlation::best(const Query& query, const Mod
   return found;
 }
 
-}  // namespace parts
+}  // namespace parts::search

@@ -7,7 +7,7 @@
 #include "parts/search/model_raster.h"
 #include "parts/spatial/surface.h"
 
-namespace parts {
+namespace parts::search {
 
 /// The exhaustive search at the coarsest scale: how well a query fits a model at
 /// every whole-voxel shift at once, by convolution. (Thesis 3.3.1 compares
@@ -58,4 +58,4 @@ class Correlation {
   static std::array<Best, 2> best(const Query& query, const Model& model);
 };
 
-}  // namespace parts
+}  // namespace parts::search

@@ -13,7 +13,7 @@
 #include "parts/base/parallel.h"
 #include "parts/base/tasks.h"
 
-namespace parts {
+namespace parts::search {
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,7 +164,8 @@ std::unique_ptr<ModelRaster> ModelCache::decode(const std::string& bytes, const 
   return r;
 }
 
-ModelCache::ModelCache(const ModelDatabase& database, const Options& options) : database_(database), options_(options) {
+ModelCache::ModelCache(const io::ModelDatabase& database, const Options& options)
+    : database_(database), options_(options) {
   std::error_code error;
   const fs::path path = database.path();
   folder_ = ((fs::is_directory(path, error) ? path : path.parent_path()) / ".model-cache").string();
@@ -263,4 +264,4 @@ void ModelCache::complete(int model) {
   while (int(r->levels.size()) < options_.levels) add_level(*r);
 }
 
-}  // namespace parts
+}  // namespace parts::search

@@ -9,7 +9,7 @@
 #include "parts/io/model_database.h"
 #include "parts/search/model_raster.h"
 
-namespace parts {
+namespace parts::search {
 
 /// The rasterisations of a database's models, from files beside it where they
 /// are good, else made and put there (in the folder ".model-cache", one file a
@@ -26,7 +26,7 @@ class ModelCache {
     int kept = 100;  ///< of more models than this, only the coarse levels stay in memory
   };
   /// @param database  kept by reference
-  ModelCache(const ModelDatabase& database, const Options& options);
+  ModelCache(const io::ModelDatabase& database, const Options& options);
 
   /// Reads or makes all rasterisations. Models that cannot be used are logged,
   /// "skipped: name (why)"; so is a folder that cannot be written.
@@ -56,11 +56,11 @@ class ModelCache {
   std::unique_ptr<ModelRaster> read(int model) const;
   bool write(int model, const ModelRaster& raster, const Key& key) const;
 
-  const ModelDatabase& database_;
+  const io::ModelDatabase& database_;
   Options options_;
   std::string folder_;
   std::vector<std::unique_ptr<ModelRaster>> rasters_;
   int made_ = 0;
 };
 
-}  // namespace parts
+}  // namespace parts::search

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts {
+namespace parts::search {
 namespace {
 
 constexpr int kMargin = 4;  // voxels around the model's box
@@ -79,12 +79,12 @@ RasterLevel nearest_samples(const std::vector<RasterPoint>& samples, const Eigen
 }
 
 ModelRaster rasterize_model(const Mesh& model, int levels) {
-  const Surface surface = make_surface(model, {}, "database");
+  const spatial::Surface surface = spatial::make_surface(model, {}, "database");
   ModelRaster raster;
   raster.origin = surface.origin;
   raster.size = surface.size;
   raster.area = surface.area();
-  for (const Sample& s : sample_surface(surface, ModelRaster::kSamples))
+  for (const spatial::Sample& s : spatial::sample_surface(surface, ModelRaster::kSamples))
     raster.samples.push_back({s.point.cast<float>(), s.normal.cast<float>()});
   for (int l = 0; l < levels; ++l) add_level(raster);
   return raster;
@@ -97,7 +97,7 @@ void add_level(ModelRaster& raster) {
       nearest_samples(raster.samples, raster.box(), ModelRaster::kCoarsest << l, l == 0 ? 1e4 : RasterLevel::kReach));
 }
 
-Closest RasterTarget::closest(const Vec3& p, int&) const {
+spatial::Closest RasterTarget::closest(const Vec3& p, int&) const {
   std::uint16_t sample = RasterLevel::kFar;
   for (int l = level_; sample == RasterLevel::kFar; --l) {
     sample = raster_.levels[l].at(p);
@@ -107,4 +107,4 @@ Closest RasterTarget::closest(const Vec3& p, int&) const {
   return {s.at.cast<double>(), s.normal.cast<double>()};
 }
 
-}  // namespace parts
+}  // namespace parts::search

@@ -8,7 +8,7 @@
 #include "parts/mesh/mesh.h"
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::search {
 
 /// A point of a surface and the unit normal of its face.
 struct RasterPoint {
@@ -65,14 +65,14 @@ ModelRaster rasterize_model(const Mesh& model, int levels);
 void add_level(ModelRaster& raster);
 
 /// A level as a surface that answers where it is closest, in about 20 ns.
-class RasterTarget : public ClosestPoint {
+class RasterTarget : public spatial::ClosestPoint {
  public:
   RasterTarget(const ModelRaster& raster, int level) : raster_(raster), level_(level) {}
-  Closest closest(const Vec3& p, int& hint) const override;
+  spatial::Closest closest(const Vec3& p, int& hint) const override;
 
  private:
   const ModelRaster& raster_;
   int level_;
 };
 
-}  // namespace parts
+}  // namespace parts::search

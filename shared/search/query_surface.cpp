@@ -9,7 +9,7 @@
 #include "parts/base/error.h"
 #include "parts/mesh/topology.h"
 
-namespace parts {
+namespace parts::search {
 namespace {
 
 constexpr int kGridPoints = 8000, kGridBorder = 40000, kGridCells = 48;
@@ -57,7 +57,7 @@ QuerySurface::QuerySurface(const SearchQuery& query) {
   if (!query.face_weight.empty() && query.face_weight.size() != query.mesh.faces.size())
     throw std::invalid_argument("one weight a face");
   const std::vector<char> flags = undamaged(query);
-  surface_ = make_surface(query.mesh, flags, "scanned");
+  surface_ = spatial::make_surface(query.mesh, flags, "scanned");
   origin_ = surface_.origin, size_ = surface_.size;
 
   // The triangles again, with their weights; those without area are left out.
@@ -90,8 +90,8 @@ QuerySurface::QuerySurface(const SearchQuery& query) {
   make_grid(query);
 }
 
-Surface QuerySurface::weighted(double reach) const {
-  Surface w = surface_;
+spatial::Surface QuerySurface::weighted(double reach) const {
+  spatial::Surface w = surface_;
   double total = 0;
   for (std::size_t t = 0; t < w.triangles.size(); ++t) {
     const double area = surface_.area_up_to[t] - (t ? surface_.area_up_to[t - 1] : 0);
@@ -101,8 +101,8 @@ Surface QuerySurface::weighted(double reach) const {
   return w;
 }
 
-std::vector<Sample> QuerySurface::samples(double reach, int count) const {
-  return sample_surface(weighted(reach), count);
+std::vector<spatial::Sample> QuerySurface::samples(double reach, int count) const {
+  return spatial::sample_surface(weighted(reach), count);
 }
 
 double QuerySurface::weighted_area(double reach) const { return weighted(reach).area(); }
@@ -111,9 +111,9 @@ void QuerySurface::make_grid(const SearchQuery& query) {
   const Mesh& mesh = query.mesh;
   Eigen::AlignedBox3f box(region_.min().cast<float>(), region_.max().cast<float>());
   box.min().array() -= float(kGridReach * radius_), box.max().array() += float(kGridReach * radius_);
-  const Surface near = weighted(kGridFocus);
+  const spatial::Surface near = weighted(kGridFocus);
   spacing_ = std::sqrt(near.area() / kGridPoints);
-  for (const Sample& s : sample_surface(near, kGridPoints))
+  for (const spatial::Sample& s : spatial::sample_surface(near, kGridPoints))
     points_.push_back({s.point.cast<float>(), s.normal.cast<float>()});
   known_ = points_.size();
 
@@ -121,13 +121,13 @@ void QuerySurface::make_grid(const SearchQuery& query) {
     const Eigen::Vector3f p = ((world - origin_) / size_).cast<float>();
     if (p.allFinite() && box.contains(p)) points_.push_back({p, Eigen::Vector3f::Zero()});
   };
-  const EdgeMap edges = edge_map(welded(mesh));
+  const mesh::EdgeMap edges = mesh::edge_map(welded(mesh));
   for (int f = 0; f < mesh.face_count(); ++f) {
     const bool damaged = !query.face_weight.empty() && !(query.face_weight[f] > 0);
     for (int k = 0; k < 3; ++k) {
       const Vec3 &a = mesh.corner(f, k), &b = mesh.corner(f, (k + 1) % 3);
       if (damaged) add(a);
-      if (!damaged && edges.mate[3 * f + k] != EdgeMap::kBoundary) continue;
+      if (!damaged && edges.mate[3 * f + k] != mesh::EdgeMap::kBoundary) continue;
       const int n = std::clamp(int((b - a).norm() / (0.5 * spacing_ * size_)), 1, 20);
       for (int i = 0; i < n; ++i) add(a + (i + 0.5) / n * (b - a));
     }
@@ -151,4 +151,4 @@ QuerySurface::Known QuerySurface::nearest(const Vec3& p, RasterPoint& found) con
   return Known::Surface;
 }
 
-}  // namespace parts
+}  // namespace parts::search

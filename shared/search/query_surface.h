@@ -7,7 +7,7 @@
 #include "parts/search/search.h"
 #include "parts/spatial/surface.h"
 
-namespace parts {
+namespace parts::search {
 
 /// The query as the search sees it: the scan's undamaged surface in a frame of
 /// its own (align/surface.h), what lies near the region counting most.
@@ -29,7 +29,7 @@ class QuerySurface {
   }
 
   /// Samples as dense as places count; every prefix is so too.
-  std::vector<Sample> samples(double reach, int count) const;
+  std::vector<spatial::Sample> samples(double reach, int count) const;
   /// The integral of the weight over the undamaged surface.
   double weighted_area(double reach) const;
 
@@ -42,17 +42,17 @@ class QuerySurface {
   Known nearest(const Vec3& p, RasterPoint& found) const;
 
  private:
-  Surface weighted(double reach) const;
+  spatial::Surface weighted(double reach) const;
   void make_grid(const SearchQuery& query);
 
   Vec3 origin_ = Vec3::Zero();
   double size_ = 1, radius_ = 1, spacing_ = 0;
   Box region_;
-  Surface surface_;                  ///< undamaged triangles
+  spatial::Surface surface_;         ///< undamaged triangles
   std::vector<double> face_weight_;  ///< of these triangles
   std::vector<RasterPoint> points_;  ///< known ones, then unknown ones
   std::size_t known_ = 0;
   RasterLevel grid_;
 };
 
-}  // namespace parts
+}  // namespace parts::search

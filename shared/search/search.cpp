@@ -14,7 +14,7 @@
 #include "parts/search/model_cache.h"
 #include "parts/search/query_surface.h"
 
-namespace parts {
+namespace parts::search {
 namespace {
 
 constexpr double kScaleStep = 1.2;  // from one scale of the coarsest search to the next
@@ -48,7 +48,7 @@ constexpr int kFit = int(kUsual.scales.size()) - 1, kLevels = kFit;
 
 /// Where a model may be: the query's frame in the model's.
 struct Place {
-  Pose pose;
+  align::Pose pose;
   double score = 0;
 };
 
@@ -67,8 +67,8 @@ void keep_best(std::vector<Place>& places, std::size_t most) {
   if (places.size() > most) places.resize(most);
 }
 
-Pose inverse(const Pose& p) {
-  Pose q;
+align::Pose inverse(const align::Pose& p) {
+  align::Pose q;
   q.rotation = p.rotation.transpose();
   q.scale = 1 / p.scale;
   q.translation = -q.scale * (q.rotation * p.translation);
@@ -77,8 +77,8 @@ Pose inverse(const Pose& p) {
 
 class Searcher {
  public:
-  Searcher(const SearchQuery& query, const ModelDatabase& database, const SearchOptions& options, Progress& progress,
-           SearchMemory& memory)
+  Searcher(const SearchQuery& query, const io::ModelDatabase& database, const SearchOptions& options,
+           Progress& progress, SearchMemory& memory)
       : query_(query),
         memory_(memory),
         database_(database),
@@ -116,8 +116,8 @@ class Searcher {
 
  private:
   std::vector<Candidate> search(const Plan& plan, const std::vector<int>& models, bool remembered, int from, int to);
-  Eigen::Affine3d placement_of(const Pose& pose, const ModelRaster& raster) const;
-  Pose pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const;
+  Eigen::Affine3d placement_of(const align::Pose& pose, const ModelRaster& raster) const;
+  align::Pose pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const;
   bool window_is_smaller() const;
   static void merge(std::vector<Candidate>& found, const std::vector<Candidate>& more);
   void choose_scales(Entry& e) const;
@@ -127,17 +127,18 @@ class Searcher {
   void refine(int level);
   void drop_worse_half();
   std::vector<Candidate> fit();
-  double score(const Pose& pose, const ModelRaster& raster, const ClosestPoint& model, bool exact, int scale) const;
+  double score(const align::Pose& pose, const ModelRaster& raster, const spatial::ClosestPoint& model, bool exact,
+               int scale) const;
 
   const SearchQuery& query_;
   SearchMemory& memory_;
-  const ModelDatabase& database_;
+  const io::ModelDatabase& database_;
   const SearchOptions& options_;
   Progress& progress_;
   int threads_, levels_;
   std::unique_ptr<QuerySurface> surface_;
   const Plan* plan_ = nullptr;
-  std::vector<Sample> samples_[kFit + 1];  ///< of each scale
+  std::vector<spatial::Sample> samples_[kFit + 1];  ///< of each scale
   double area_[kFit + 1] = {};
   std::vector<Entry> entries_;
   std::vector<int> promising_;  ///< models in the order of the coarsest scale
@@ -182,8 +183,8 @@ std::vector<Candidate> Searcher::search(const Plan& plan, const std::vector<int>
   return fit();
 }
 
-Eigen::Affine3d Searcher::placement_of(const Pose& pose, const ModelRaster& raster) const {
-  const Pose back = inverse(pose);
+Eigen::Affine3d Searcher::placement_of(const align::Pose& pose, const ModelRaster& raster) const {
+  const align::Pose back = inverse(pose);
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
   placement.linear() = back.scale * surface_->size() / raster.size * back.rotation;
   placement.translation() =
@@ -191,9 +192,9 @@ Eigen::Affine3d Searcher::placement_of(const Pose& pose, const ModelRaster& rast
   return placement;
 }
 
-Pose Searcher::pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const {
+align::Pose Searcher::pose_of(const Eigen::Affine3d& placement, const ModelRaster& raster) const {
   const double scale = placement.linear().col(0).norm();
-  Pose p;
+  align::Pose p;
   p.rotation = (placement.linear() / scale).transpose();
   p.scale = surface_->size() / (raster.size * scale);
   p.translation = (p.rotation * (surface_->origin() - placement.translation()) / scale - raster.origin) / raster.size;
@@ -250,7 +251,7 @@ std::vector<Eigen::Matrix3d> Searcher::rotations() const {
     r.push_back(Eigen::AngleAxisd(25 * M_PI / 180, axis).toRotationMatrix());
   }
   if (options_.any_rotation)
-    for (const Eigen::Matrix3d& turn : spread_rotations(kRotations)) r.push_back(turn);
+    for (const Eigen::Matrix3d& turn : align::spread_rotations(kRotations)) r.push_back(turn);
   r.insert(r.begin(), Eigen::Matrix3d::Identity());
   return r;
 }
@@ -268,7 +269,7 @@ void Searcher::propose(Entry& e, int scale, const Eigen::Matrix3d& rotation, con
 void Searcher::search_everywhere(int from, int to) {
   const std::vector<Eigen::Matrix3d> turns = rotations();
   std::vector<Correlation::Point> points;
-  for (const Sample& s : samples_[0])
+  for (const spatial::Sample& s : samples_[0])
     points.push_back({s.point - surface_->region().center(), 1 / surface_->weight(s.point, plan_->scales[0].reach)});
   std::map<int, std::vector<Entry*>> by_scale;
   for (Entry& e : entries_)
@@ -313,10 +314,10 @@ double squared_distance(const Vec3& p, const Vec3& sample, const Vec3& normal, d
   return across * across + along * along;
 }
 
-double Searcher::score(const Pose& pose, const ModelRaster& raster, const ClosestPoint& model, bool exact,
-                       int scale_index) const {
+double Searcher::score(const align::Pose& pose, const ModelRaster& raster, const spatial::ClosestPoint& model,
+                       bool exact, int scale_index) const {
   const Scale& scale = plan_->scales[scale_index];
-  const std::vector<Sample>& samples = samples_[scale_index];
+  const std::vector<spatial::Sample>& samples = samples_[scale_index];
   const double weighted_area = area_[scale_index];
   const double most = kFarthest * surface_->radius(), most2 = most * most;
   const double spacing = exact ? 0 : std::sqrt(raster.area / double(raster.samples.size()));
@@ -325,14 +326,14 @@ double Searcher::score(const Pose& pose, const ModelRaster& raster, const Closes
   const int n = std::min(scale.samples, int(samples.size()));
   for (int i = 0; i < n; ++i) {
     const Vec3 p = pose(samples[i].point);
-    const Closest c = model.closest(p, hint);
+    const spatial::Closest c = model.closest(p, hint);
     const double d2 = squared_distance(p, c.point, c.normal, spacing) / (pose.scale * pose.scale);
     const double turned = 1 - std::abs(c.normal.dot(pose.rotation * samples[i].normal));
     forth += std::min(d2, most2) + kTurned * most2 * turned;
   }
   forth *= weighted_area / n;
   double back = 0, back_area = 0;
-  const Pose to_query = inverse(pose);
+  const align::Pose to_query = inverse(pose);
   const int m = std::min(4 * scale.samples, int(raster.samples.size()));
   const double share = raster.area * to_query.scale * to_query.scale / m;
   for (int i = 0; i < m; ++i) {
@@ -359,13 +360,13 @@ void Searcher::refine(int level) {
     if (grid > 1) memory_.models->complete(e.model);
     const RasterTarget target(*e.raster, grid);
     for (Place& p : e.places) {
-      IcpOptions icp_options;
+      align::IcpOptions icp_options;
       icp_options.samples = scale.samples;
       icp_options.iterations = scale.iterations;
       icp_options.overlap = 0.8;
       icp_options.scale = options_.allow_scale;
       icp_options.done = 1e-3;
-      p.pose = icp(samples_[level], target, p.pose, icp_options, poll).pose;
+      p.pose = align::icp(samples_[level], target, p.pose, icp_options, poll).pose;
       p.score = score(p.pose, *e.raster, target, false, level);
     }
     keep_best(e.places, std::size_t(scale.places));
@@ -378,16 +379,16 @@ std::vector<Candidate> Searcher::fit() {
   std::vector<Candidate> found(entries_.size());
   run_tasks(int(entries_.size()), threads_, progress_, [&](int i, const std::function<void()>& poll) {
     const Entry& e = entries_[i];
-    const Surface model = make_surface(database_.load(e.model), {}, "database");
-    const TriangleTree tree(model);
-    IcpOptions icp_options;
+    const spatial::Surface model = spatial::make_surface(database_.load(e.model), {}, "database");
+    const spatial::TriangleTree tree(model);
+    align::IcpOptions icp_options;
     icp_options.samples = scale.samples;
     icp_options.iterations = scale.iterations;
     icp_options.overlap = 0.9;
     icp_options.scale = options_.allow_scale;
     icp_options.done = 1e-5;
-    const std::vector<Sample>& samples = samples_[kFit];
-    const Pose pose = icp(samples, tree, e.places[0].pose, icp_options, poll).pose;
+    const std::vector<spatial::Sample>& samples = samples_[kFit];
+    const align::Pose pose = align::icp(samples, tree, e.places[0].pose, icp_options, poll).pose;
     Candidate& c = found[i];
     c.model = e.model;
     c.score = score(pose, *e.raster, tree, true, kFit);
@@ -401,10 +402,10 @@ std::vector<Candidate> Searcher::fit() {
 
 }  // namespace
 
-std::vector<Candidate> find_similar(const SearchQuery& query, const ModelDatabase& database,
+std::vector<Candidate> find_similar(const SearchQuery& query, const io::ModelDatabase& database,
                                     const SearchOptions& options, Progress& progress, SearchMemory* memory) {
   SearchMemory own;
   return Searcher(query, database, options, progress, memory ? *memory : own).run();
 }
 
-}  // namespace parts
+}  // namespace parts::search

@@ -9,7 +9,7 @@
 #include "parts/io/model_database.h"
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::search {
 
 /// What is looked for: a place in a scan.
 struct SearchQuery {
@@ -52,7 +52,7 @@ struct SearchMemory {
 /// @throws UserError  nothing left to compare: no surface with weight near the
 ///                    region, or no usable model
 /// @throws Cancelled
-std::vector<Candidate> find_similar(const SearchQuery& query, const ModelDatabase& database,
+std::vector<Candidate> find_similar(const SearchQuery& query, const io::ModelDatabase& database,
                                     const SearchOptions& options, Progress& progress, SearchMemory* memory = nullptr);
 
-}  // namespace parts
+}  // namespace parts::search

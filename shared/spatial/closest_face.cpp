@@ -3,7 +3,7 @@
 
 #include "parts/mesh/edges.h"
 
-namespace parts {
+namespace parts::spatial {
 
 ClosestFace::ClosestFace(const Mesh& mesh, const std::vector<char>& flags) : mesh_(mesh) {
   const auto belongs = [&](int f) { return flags.empty() || flags[f]; };
@@ -20,7 +20,7 @@ ClosestFace::ClosestFace(const Mesh& mesh, const std::vector<char>& flags) : mes
   tree_ = std::make_unique<TriangleTree>(surface);
   border_edge_.assign(mesh.faces.size(), {false, false, false});
   border_vertex_.assign(mesh.vertices.size(), 0);
-  for_each_mesh_edge(sorted_half_edges(mesh), [&](auto first, auto last) {
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(mesh), [&](auto first, auto last) {
     int count = 0;
     for (auto e = first; e < last; ++e) count += belongs(e->face);
     if (count != 1) return;
@@ -53,4 +53,4 @@ FaceHit ClosestFace::operator()(const Vec3& p, int& hint) const {
   return hit;
 }
 
-}  // namespace parts
+}  // namespace parts::spatial

@@ -7,7 +7,7 @@
 #include "parts/mesh/mesh.h"
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::spatial {
 
 /// Where a mesh is closest to a point.
 struct FaceHit {
@@ -43,4 +43,4 @@ class ClosestFace {
   std::vector<char> border_vertex_;
 };
 
-}  // namespace parts
+}  // namespace parts::spatial

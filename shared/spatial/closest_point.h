@@ -5,7 +5,7 @@
 
 #include "parts/spatial/surface.h"
 
-namespace parts {
+namespace parts::spatial {
 
 /// Where a surface is closest to a point.
 struct Closest {
@@ -63,4 +63,4 @@ class TriangleTree : public ClosestPoint {
   std::vector<Node> nodes_;
 };
 
-}  // namespace parts
+}  // namespace parts::spatial

@@ -4,7 +4,7 @@
 
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::spatial {
 
 ClosestSampleGrid::ClosestSampleGrid(std::vector<Sample> samples, int cells_along_longest_side)
     : samples_(std::move(samples)) {
@@ -62,4 +62,4 @@ Closest ClosestSampleGrid::closest(const Vec3& p, int&) const {
   return {s.point, s.normal};
 }
 
-}  // namespace parts
+}  // namespace parts::spatial

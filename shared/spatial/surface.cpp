@@ -9,7 +9,7 @@
 
 #include "parts/base/error.h"
 
-namespace parts {
+namespace parts::spatial {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -115,4 +115,4 @@ Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) {
   return axes;
 }
 
-}  // namespace parts
+}  // namespace parts::spatial

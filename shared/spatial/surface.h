@@ -6,7 +6,7 @@
 
 #include "parts/mesh/mesh.h"
 
-namespace parts {
+namespace parts::spatial {
 
 /// A point of a surface and the unit normal of its face.
 struct Sample {
@@ -40,4 +40,4 @@ std::vector<Sample> sample_surface(const Surface& surface, int count);
 /// Columns: the principal axes of a covariance, largest variance first, right-handed.
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance);
 
-}  // namespace parts
+}  // namespace parts::spatial

@@ -4,7 +4,7 @@
 
 #include "parts/spatial/closest_point.h"
 
-namespace parts {
+namespace parts::spatial {
 namespace {
 
 /// By the Voronoi regions of corners, sides and inside (Ericson, "Real-Time
@@ -109,4 +109,4 @@ Closest TriangleTree::closest(const Vec3& p, int& hint) const {
   return {point, normals_[best], number_[best]};
 }
 
-}  // namespace parts
+}  // namespace parts::spatial

@@ -7,7 +7,7 @@
 #include "parts/base/parallel.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::synthesis {
 
 cv::Mat ImagePyramid::band(int plane, int level) const {
   const std::vector<cv::Mat>& p = planes[plane];
@@ -166,4 +166,4 @@ std::vector<Votes> vote(const PatchPlane& query, const std::vector<Match>& match
   return votes;
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

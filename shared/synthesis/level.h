@@ -3,7 +3,7 @@
 
 #include "parts/synthesis/search.h"
 
-namespace parts {
+namespace parts::synthesis {
 
 /// An image's planes and coverage at every level, fine to coarse.
 struct ImagePyramid {
@@ -38,4 +38,4 @@ struct Votes {
 std::vector<Votes> vote(const PatchPlane& query, const std::vector<Match>& matches,
                         const std::vector<LevelExample>& examples, const PatchLayout& layout, int planes, int threads);
 
-}  // namespace parts
+}  // namespace parts::synthesis

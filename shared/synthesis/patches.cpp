@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts {
+namespace parts::synthesis {
 namespace {
 
 // Variance added before windows are normalised, as a share of the image's own:
@@ -146,4 +146,4 @@ float distance(const Window& window, const PatchPlane& plane, int x, int y, cons
   }
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

@@ -8,7 +8,7 @@
 
 #include "parts/synthesis/synthesis.h"
 
-namespace parts {
+namespace parts::synthesis {
 
 /// Windows are compared four channels at a time.
 using Lane = Eigen::Array4f;
@@ -61,4 +61,4 @@ void gather(const PatchPlane& plane, const cv::Mat& coverage, int x, int y, cons
 /// least `enough` the rest is not looked at.
 float distance(const Window& window, const PatchPlane& plane, int x, int y, const PatchLayout& layout, float enough);
 
-}  // namespace parts
+}  // namespace parts::synthesis

@@ -3,7 +3,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace parts {
+namespace parts::synthesis {
 namespace {
 
 // Premultiplied by weight: pulls down until one pixel is left, pushes up again.
@@ -67,4 +67,4 @@ cv::Mat expand(const cv::Mat& image, cv::Size size) {
   return result;
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace parts {
+namespace parts::synthesis {
 
 /// Fills the background from the foreground, smoothly (push-pull), so that no
 /// filter sees an edge where there is none. plane 32F, mask 8U.
@@ -16,4 +16,4 @@ std::vector<cv::Mat> gaussian_pyramid(const cv::Mat& image, int levels);
 /// An image twice as large, smooth; `size` is that of the level above.
 cv::Mat expand(const cv::Mat& image, cv::Size size);
 
-}  // namespace parts
+}  // namespace parts::synthesis

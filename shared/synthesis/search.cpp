@@ -8,7 +8,7 @@
 
 #include "parts/base/parallel.h"
 
-namespace parts {
+namespace parts::synthesis {
 namespace {
 
 constexpr int leaf_size = 8, most_axes = 14, band_rows = 16;
@@ -254,4 +254,4 @@ void search(const PatchPlane& query, const cv::Mat& coverage, const std::vector<
   }
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

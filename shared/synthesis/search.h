@@ -6,7 +6,7 @@
 
 #include "parts/synthesis/patches.h"
 
-namespace parts {
+namespace parts::synthesis {
 
 /// A window of an example: its centre.
 struct Match {
@@ -66,4 +66,4 @@ class PatchTree {
 void search(const PatchPlane& query, const cv::Mat& coverage, const std::vector<LevelExample>& examples,
             const PatchLayout& layout, const PatchTree* tree, int threads, std::vector<Match>& matches);
 
-}  // namespace parts
+}  // namespace parts::synthesis

@@ -9,7 +9,7 @@
 #include "parts/synthesis/level.h"
 #include "parts/synthesis/pyramid.h"
 
-namespace parts {
+namespace parts::synthesis {
 namespace {
 
 constexpr long tree_windows = 60000;
@@ -300,4 +300,4 @@ SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage
   return Optimizer(query, examples, options, update, agree).run(progress);
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

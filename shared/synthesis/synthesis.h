@@ -11,7 +11,7 @@
 /// Planes are completed from examples, patch by patch: the optimisation behind
 /// depth, back sides and colour (thesis 4.1, 5.1). It knows nothing of any of
 /// these, only planes of numbers, some known and some to be found.
-namespace parts {
+namespace parts::synthesis {
 
 /// An example or the query. Planes are 32F, height x width, all of one size; a
 /// query's synthesised planes may be empty. Values where the mask is 0 mean
@@ -90,4 +90,4 @@ SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage
                            const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress,
                            const Agreement& agree = {});
 
-}  // namespace parts
+}  // namespace parts::synthesis

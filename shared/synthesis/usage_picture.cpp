@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts {
+namespace parts::synthesis {
 
 cv::Mat usage_picture(const cv::Mat& example, const cv::Scalar& background) {
   cv::Mat picture(example.size(), CV_8UC3, background);
@@ -21,4 +21,4 @@ cv::Mat usage_picture(const cv::Mat& example, const cv::Scalar& background) {
   return picture;
 }
 
-}  // namespace parts
+}  // namespace parts::synthesis

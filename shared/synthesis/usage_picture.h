@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace parts {
+namespace parts::synthesis {
 
 /// Where pixels came from (thesis Fig. 27c): a colour an example, each as
 /// different from the ones before as can be.
@@ -12,4 +12,4 @@ namespace parts {
 /// @return 8UC3
 cv::Mat usage_picture(const cv::Mat& example, const cv::Scalar& background = {});
 
-}  // namespace parts
+}  // namespace parts::synthesis

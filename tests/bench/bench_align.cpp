@@ -81,7 +81,7 @@ Tried try_once(const Kind& kind, const Task& task, Random& random) {
     v = away * v;
   }
 
-  AlignOptions options;
+  align::AlignOptions options;
   options.allow_scale = task.scale, options.allow_mirror = task.mirror, options.overlap = task.overlap;
   Tried tried;
   Stopwatch last;
@@ -91,7 +91,7 @@ Tried try_once(const Kind& kind, const Task& task, Random& random) {
     return true;
   });
   const Stopwatch watch;
-  const AlignResult r = align_part_in_whole(moving, moving_part, fixed, fixed_part, options, progress);
+  const align::AlignResult r = align::align_part_in_whole(moving, moving_part, fixed, fixed_part, options, progress);
   tried.times = {watch.wall(), watch.cpu()};
 
   Eigen::Affine3d left = Eigen::Affine3d(r.matrix) * away;  // what is left to the truth
@@ -136,7 +136,7 @@ std::vector<Kind> kinds() {
         if (e.path().extension() == ".obj" || e.path().extension() == ".ply") files.push_back(e.path());
       std::sort(files.begin(), files.end());
       for (std::size_t i = 0; i < files.size(); ++i)
-        if (kind.name != "hands" || i % 2 == 0) kind.meshes.push_back(read_mesh(files[i].string()));  // left hands
+        if (kind.name != "hands" || i % 2 == 0) kind.meshes.push_back(io::read_mesh(files[i].string()));  // left hands
       all.push_back(std::move(kind));
     }
   return all;

@@ -22,25 +22,25 @@ using namespace parts::bench;
 namespace {
 
 /// A class, one object kept out, its examples in memory.
-class Others : public ExampleSource {
+class Others : public examples::ExampleSource {
  public:
-  explicit Others(ExampleSource& all) : all_(all) {
+  explicit Others(examples::ExampleSource& all) : all_(all) {
     for (int k = 0; k < all.size(); ++k) examples_.push_back(all.get(k, {}));
   }
   void leave_out(int k) { without_ = k; }
-  const Example& whole(int k) const { return examples_[k]; }
+  const examples::Example& whole(int k) const { return examples_[k]; }
   int size() const override { return all_.size() - (without_ >= 0); }
   const std::string& name(int k) const override { return all_.name(of(k)); }
   cv::Size image_size() const override { return all_.image_size(); }
-  std::vector<View> views(int k) const override { return all_.views(of(k)); }
-  Example get(int k, const View&) override { return examples_[of(k)]; }
-  const ClassPreset& preset() const override { return all_.preset(); }
+  std::vector<render::View> views(int k) const override { return all_.views(of(k)); }
+  examples::Example get(int k, const render::View&) override { return examples_[of(k)]; }
+  const io::ClassPreset& preset() const override { return all_.preset(); }
   std::vector<std::string> files() const override { return all_.files(); }
 
  private:
   int of(int k) const { return without_ >= 0 && k >= without_ ? k + 1 : k; }
-  ExampleSource& all_;
-  std::vector<Example> examples_;
+  examples::ExampleSource& all_;
+  std::vector<examples::Example> examples_;
   int without_ = -1;
 };
 
@@ -74,8 +74,8 @@ double gradient_correlation(const cv::Mat& map, const cv::Mat& truth, const cv::
 }
 
 /// An example's image, its centroid on another's.
-cv::Mat pasted(const Example& from, const cv::Mat& onto) {
-  const cv::Point2d shift = centroid(onto) - centroid(from.mask);
+cv::Mat pasted(const examples::Example& from, const cv::Mat& onto) {
+  const cv::Point2d shift = render::centroid(onto) - render::centroid(from.mask);
   cv::Mat out;
   cv::warpAffine(from.image, out, cv::Matx23d(1, 0, shift.x, 0, 1, shift.y), onto.size(), cv::INTER_LINEAR,
                  cv::BORDER_REPLICATE);
@@ -103,8 +103,8 @@ const std::vector<std::string> kHead{"class", "maps",   "correlation", "nearest 
 
 std::string folder(const std::string& name) { return std::string(PARTS_DATA) + "/" + name; }
 
-ExampleOptions unlit(int width, int height) {
-  ExampleOptions o;
+examples::ExampleOptions unlit(int width, int height) {
+  examples::ExampleOptions o;
   o.width = width, o.height = height, o.ambient = 1, o.back = false;
   return o;
 }
@@ -115,16 +115,16 @@ void depth(int every) {
                                        std::pair("bodies", 2), std::pair("fish", 2)}) {
     if (!std::filesystem::exists(folder(name))) continue;
     Progress silent;
-    const auto all = open_examples(folder(name), {View{}}, unlit(150, 200), silent);
+    const auto all = examples::open_examples(folder(name), {render::View{}}, unlit(150, 200), silent);
     Others others(*all);
-    ColorizeOptions options;
+    colorize::ColorizeOptions options;
     options.examples = examples;
     Score score;
     for (int q = 0; q < all->size(); q += every) {
       others.leave_out(q);
-      const Example& query = others.whole(q);
+      const examples::Example& query = others.whole(q);
       const Stopwatch watch;
-      const ColorizeResult r = colorize_depth(query.depth, others, options, silent);
+      const colorize::ColorizeResult r = colorize::colorize_depth(query.depth, others, options, silent);
       const double cpu = watch.cpu();
       for (int k = 0; k < others.size(); ++k)
         if (others.name(k) == r.used[0])
@@ -138,9 +138,9 @@ void depth(int every) {
   table.note("Faulty: features sit no better than those of the most similar example, pasted centroid on centroid.");
 }
 
-ColorizeMeshOptions mesh_options(int width, int height, int examples) {
-  ColorizeMeshOptions o;
-  o.views = parse_views("0,0; 60,0; 120,0; 180,0; -120,0; -60,0; 0,75; 0,-75");
+colorize::ColorizeMeshOptions mesh_options(int width, int height, int examples) {
+  colorize::ColorizeMeshOptions o;
+  o.views = render::parse_views("0,0; 60,0; 120,0; 180,0; -120,0; -60,0; 0,75; 0,-75");
   o.rendering = unlit(width, height);
   o.examples = examples;
   return o;
@@ -157,37 +157,39 @@ std::filesystem::path without(const std::string& name, const std::string& object
   return to;
 }
 
-void mesh(int every) {
+void meshes(int every) {
   Table table("Colorize Mesh, seen from 6 views between those of the synthesis, one object left out each time", kHead);
   for (const auto& [name, examples] : {std::pair("heads", 2), std::pair("hands", 2), std::pair("bodies", 1)}) {
     if (!std::filesystem::exists(folder(name))) continue;
     Progress silent;
-    const ModelDatabase all(folder(name), silent);
-    const ColorizeMeshOptions options = mesh_options(300, 400, examples);
+    const io::ModelDatabase all(folder(name), silent);
+    const colorize::ColorizeMeshOptions options = mesh_options(300, 400, examples);
     Score score;
     for (int q = 0; q < all.size(); q += every) {
-      const ModelDatabase rest(without(name, std::filesystem::path(all.name(q)).stem()).string(), silent);
-      ClassModels models(rest, options.views, options.rendering, silent);
-      ClassModel truth{all.name(q), all.load(q), {}, Vec3::Zero(), 1};
-      truth.textures = load_textures(truth.mesh);
+      const io::ModelDatabase rest(without(name, std::filesystem::path(all.name(q)).stem()).string(), silent);
+      examples::ClassModels models(rest, options.views, options.rendering, silent);
+      examples::ClassModel truth{all.name(q), all.load(q), {}, Vec3::Zero(), 1};
+      truth.textures = render::load_textures(truth.mesh);
       truth.center = truth.mesh.bounds().center();
       truth.size = models.shown_size(truth.mesh.bounds().diagonal().norm());
       const Stopwatch watch;
-      const MeshColors colors = colorize_mesh(truth.mesh, models, options, silent);
+      const colorize::MeshColors colors = colorize::colorize_mesh(truth.mesh, models, options, silent);
       const double cpu = watch.cpu();
-      ClassModel found = truth;
+      examples::ClassModel found = truth;
       const int size = 1024;
-      found.mesh.wedges = make_atlas(truth.mesh, size).wedges;
-      found.textures.images = {{bake_texture(truth.mesh, found.mesh.wedges, size, colors, 0).color}};
+      found.mesh.wedges = render::make_atlas(truth.mesh, size).wedges;
+      found.textures.images = {{colorize::bake_texture(truth.mesh, found.mesh.wedges, size, colors, 0).color}};
       double ours = 0, nearest = 0;
       for (int k = 0; k < models.size(); ++k)
         if (models.name(k) == colors.used[0])
           for (double yaw : {30., 90., 150., 210., 270., 330.}) {
-            const ExampleOptions look = unlit(150, 200);
+            const examples::ExampleOptions look = unlit(150, 200);
             const double frame = models.frame() / 2;
-            const Example t = render_example(truth, {yaw, 20}, frame, look);
-            const Example n = render_example(models.get(k), {yaw, 20}, frame, look);
-            ours += gradient_correlation(render_example(found, {yaw, 20}, frame, look).image, t.image, t.mask) / 6;
+            const examples::Example t = examples::render_example(truth, {yaw, 20}, frame, look);
+            const examples::Example n = examples::render_example(models.get(k), {yaw, 20}, frame, look);
+            ours +=
+                gradient_correlation(examples::render_example(found, {yaw, 20}, frame, look).image, t.image, t.mask) /
+                6;
             nearest += gradient_correlation(pasted(n, t.mask), t.image, t.mask) / 6;
           }
       score.add(ours, nearest, cpu);
@@ -199,32 +201,32 @@ void mesh(int every) {
 void time() {
   if (!std::filesystem::exists(folder("heads"))) return;
   Progress silent;
-  const auto all = open_examples(folder("heads"), {View{}}, unlit(200, 150), silent);
+  const auto all = examples::open_examples(folder("heads"), {render::View{}}, unlit(200, 150), silent);
   Others others(*all);
   others.leave_out(0);
   Table table("Time", {"what", "wall s", "cpu s", "target s"});
-  const Times one = best_of([&] { colorize_depth(others.whole(0).depth, others, {}, silent); });
+  const Times one = best_of([&] { colorize::colorize_depth(others.whole(0).depth, others, {}, silent); });
   table.row({"a depth map of 200 x 150, 23 heads in memory, 2 used", text(one.wall), text(one.cpu), "1"});
   const Stopwatch watch;
   {
-    const auto fresh = open_examples(folder("heads"), {View{}}, unlit(150, 200), silent);
+    const auto fresh = examples::open_examples(folder("heads"), {render::View{}}, unlit(150, 200), silent);
     for (int k = 0; k < fresh->size(); ++k) {
-      ColorizeOptions options;
+      colorize::ColorizeOptions options;
       options.seed = unsigned(k);
-      colorize_depth(fresh->get(k, {}).depth, *fresh, options, silent);
+      colorize::colorize_depth(fresh->get(k, {}).depth, *fresh, options, silent);
     }
   }
   table.row(
       {"24 depth maps of 150 x 200 from 24 heads, reading them too", text(watch.wall()), text(watch.cpu()), "30"});
   for (const char* name : {"heads", "bodies"}) {
-    const ModelDatabase models(folder(name), silent);
+    const io::ModelDatabase models(folder(name), silent);
     const Mesh query = models.load(0);
-    const ColorizeMeshOptions options = mesh_options(300, 400, 2);
+    const colorize::ColorizeMeshOptions options = mesh_options(300, 400, 2);
     const Times mesh = best_of(
         [&] {
-          ClassModels read(models, options.views, options.rendering, silent);
-          const MeshColors colors = colorize_mesh(query, read, options, silent);
-          bake_texture(query, make_atlas(query, 1024).wedges, 1024, colors, 0);
+          examples::ClassModels read(models, options.views, options.rendering, silent);
+          const colorize::MeshColors colors = colorize::colorize_mesh(query, read, options, silent);
+          colorize::bake_texture(query, render::make_atlas(query, 1024).wedges, 1024, colors, 0);
         },
         1);
     table.row({"a mesh of " + count(query.vertex_count()) + " vertices, texture of 1024, reading " +
@@ -239,6 +241,6 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 && !std::isdigit(argv[1][0]) ? argv[1] : "";
   const int every = std::max(1, argc > 2 ? std::atoi(argv[2]) : argc > 1 && what.empty() ? std::atoi(argv[1]) : 1);
   if (what.empty() || what == "depth") depth(every);
-  if (what.empty() || what == "mesh") mesh(std::max(every, what.empty() ? 4 : 1));
+  if (what.empty() || what == "meshes") meshes(std::max(every, what.empty() ? 4 : 1));
   if (what.empty() || what == "time") time();
 }

@@ -11,16 +11,16 @@ using namespace parts::bench;
 namespace {
 
 /// Seconds (wall, processor), voxels, milliseconds of the cut, faces out.
-std::vector<double> run(const Scene& scene, int resolution, Cut cut, bool once) {
-  ComposeOptions options;
+std::vector<double> run(const Scene& scene, int resolution, cut::Cut cut, bool once) {
+  compose::ComposeOptions options;
   options.resolution = resolution;
   options.cut = cut;
   Progress silent;
-  ComposeReport report;
+  compose::ComposeReport report;
   int faces = 0;
   const Times t = best_of(
       [&] {
-        const ComposeResult r = compose(scene.a, scene.b, options, silent);
+        const compose::ComposeResult r = compose::compose(scene.a, scene.b, options, silent);
         report = r.report, faces = r.composed.face_count();
       },
       once ? 1 : 20);
@@ -36,7 +36,7 @@ std::vector<double> run(const Scene& scene, int resolution, Cut cut, bool once) 
           double(report.loops_open)};
 }
 
-Child composed(const Scene& scene, int resolution, Cut cut, bool once) {
+Child composed(const Scene& scene, int resolution, cut::Cut cut, bool once) {
   return in_child([&] { return run(scene, resolution, cut, once); }, 300);
 }
 
@@ -46,9 +46,9 @@ void small_meshes() {
   Table table("Two meshes of 20,000 faces at the default resolution",
               {"Scene", "Cut", "Grid", "Cut ms", "Wall s", "Processor s", "Loops joined, open", "< 0.5 s"});
   for (const Scene& scene : {two_spheres(20000), two_tubes(20000), two_tori(20000), two_creatures(20000)})
-    for (const Cut cut : {Cut::Refined, Cut::Thesis}) {
+    for (const cut::Cut cut : {cut::Cut::Refined, cut::Cut::Thesis}) {
       const Child c = composed(scene, 0, cut, false);
-      const char* name = cut == Cut::Thesis ? "Thesis" : "Refined";
+      const char* name = cut == cut::Cut::Thesis ? "Thesis" : "Refined";
       if (!c.ended) {
         table.row({scene.name, name, "failed"});
         continue;
@@ -66,7 +66,7 @@ void large_meshes() {
   for (const Scene& scene : {two_spheres(500000), two_creatures(500000)}) {
     double before = 0, voxels_before = 0;
     for (const int resolution : {128, 256, 512}) {
-      const Child c = composed(scene, resolution, Cut::Refined, true);
+      const Child c = composed(scene, resolution, cut::Cut::Refined, true);
       if (!c.ended) {
         table.row({scene.name, std::to_string(resolution), "failed"});
         continue;

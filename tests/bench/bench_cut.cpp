@@ -27,20 +27,20 @@ constexpr double kTarget = 0.050;  // seconds
 
 /// The cut as compose() makes it, everything between voxels and labels.
 /// @return its wall and processor time
-Times cut_times(const Scene& scene, const Entry& entry, Cut cut, long& voxels) {
+Times cut_times(const Scene& scene, const Entry& entry, cut::Cut cut, long& voxels) {
   // Grid::over adds a voxel all around.
   const int resolution = *std::max_element(entry.dims.begin(), entry.dims.end()) - 2;
-  Model a = make_model(scene.a, "A"), b = make_model(scene.b, "B");
+  cut::Model a = cut::make_model(scene.a, "A"), b = cut::make_model(scene.b, "B");
   const Box volume = bounds(scene.a, scene.b);
   double wall = 1e300;
   const auto whole = best_of([&] {
-    CutReport report;
+    cut::CutReport report;
     Progress silent;
-    const Decision d = decide(a, b, volume, resolution, cut, 0, report, silent);
+    const cut::Decision d = cut::decide(a, b, volume, resolution, cut, 0, report, silent);
     if (report.grid != entry.dims || !d.labels.connected) throw std::logic_error("not the scene that was meant");
     wall = std::min(wall, report.cut_seconds), voxels = d.voxels.size();
   });
-  const auto voxelization = best_of([&] { joint_voxels(a, b, volume, resolution, 0); });
+  const auto voxelization = best_of([&] { cut::joint_voxels(a, b, volume, resolution, 0); });
   return {wall, whole.cpu - voxelization.cpu};
 }
 
@@ -57,8 +57,8 @@ int main() {
     for (Scene scene : {two_spheres(20000), two_tubes(20000), two_creatures(20000)}) {
       fit(scene, Vec3(entry.dims[0] - 2, entry.dims[1] - 2, entry.dims[2] - 2));
       long voxels = 0;
-      const Times thesis = cut_times(scene, entry, Cut::Thesis, voxels);
-      const Times refined = cut_times(scene, entry, Cut::Refined, voxels);
+      const Times thesis = cut_times(scene, entry, cut::Cut::Thesis, voxels);
+      const Times refined = cut_times(scene, entry, cut::Cut::Refined, voxels);
       worst = std::max({worst, thesis.cpu, refined.cpu});
       const char* gap = cells[0].empty() ? "" : " / ";
       const double shown[4] = {thesis.cpu, thesis.wall, refined.cpu, refined.wall};

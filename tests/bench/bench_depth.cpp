@@ -30,29 +30,29 @@ using namespace parts::bench;
 namespace {
 
 /// A class of data/NAME, one object kept out.
-class Others : public ExampleSource {
+class Others : public examples::ExampleSource {
  public:
-  Others(ExampleSource& all, int without) : all_(all), without_(without) {}
+  Others(examples::ExampleSource& all, int without) : all_(all), without_(without) {}
   int size() const override { return all_.size() - (without_ >= 0); }
   const std::string& name(int k) const override { return all_.name(of(k)); }
   cv::Size image_size() const override { return all_.image_size(); }
-  std::vector<View> views(int k) const override { return all_.views(of(k)); }
-  Example get(int k, const View& view) override { return all_.get(of(k), view); }
-  std::optional<Light> light() const override { return all_.light(); }
-  void set_light(const Light& light) override { all_.set_light(light); }
-  const ClassPreset& preset() const override { return all_.preset(); }
+  std::vector<render::View> views(int k) const override { return all_.views(of(k)); }
+  examples::Example get(int k, const render::View& view) override { return all_.get(of(k), view); }
+  std::optional<examples::Light> light() const override { return all_.light(); }
+  void set_light(const examples::Light& light) override { all_.set_light(light); }
+  const io::ClassPreset& preset() const override { return all_.preset(); }
 
  private:
   int of(int k) const { return without_ >= 0 && k >= without_ ? k + 1 : k; }
-  ExampleSource& all_;
+  examples::ExampleSource& all_;
   int without_;
 };
 
-std::unique_ptr<ExampleSource> open(const std::string& name, int width = 150, int height = 200) {
+std::unique_ptr<examples::ExampleSource> open(const std::string& name, int width = 150, int height = 200) {
   Progress progress;
-  ExampleOptions options;
+  examples::ExampleOptions options;
   options.width = width, options.height = height;
-  return open_examples(std::string(PARTS_DATA) + "/" + name, {{0, 0}}, options, progress);
+  return examples::open_examples(std::string(PARTS_DATA) + "/" + name, {{0, 0}}, options, progress);
 }
 
 struct Error {
@@ -88,9 +88,9 @@ Error compare(const cv::Mat& depth, const cv::Mat& truth, const cv::Mat& mask) {
 }
 
 /// An example's depth, moved so that its centroid lies on the query's.
-cv::Mat moved(const cv::Mat& depth, const Example& e, const Example& query) {
-  const cv::Point2d by = centroid(query.mask) - centroid(e.mask);
-  const cv::Mat full = extend(depth, e.mask);
+cv::Mat moved(const cv::Mat& depth, const examples::Example& e, const examples::Example& query) {
+  const cv::Point2d by = render::centroid(query.mask) - render::centroid(e.mask);
+  const cv::Mat full = synthesis::extend(depth, e.mask);
   cv::Mat result(full.size(), CV_32F);
   for (int y = 0; y < full.rows; ++y)
     for (int x = 0; x < full.cols; ++x)
@@ -107,26 +107,26 @@ struct Score {
 
 /// One query, and what the others say of it.
 /// @param queries  where the query is rendered, if not like the others
-void measure(ExampleSource& all, int k, const View& view, const DepthOptions& options, double share, Score& score,
-             ExampleSource* queries = nullptr) {
+void measure(examples::ExampleSource& all, int k, const render::View& view, const depth::DepthOptions& options,
+             double share, Score& score, examples::ExampleSource* queries = nullptr) {
   Others others(all, k);
-  const Example q = (queries ? *queries : all).get(k, view);
+  const examples::Example q = (queries ? *queries : all).get(k, view);
   Progress quiet;
   const Stopwatch watch;
-  const DepthResult r = reconstruct_depth({q.image, q.mask}, others, options, quiet);
+  const depth::DepthResult r = depth::reconstruct_depth({q.image, q.mask}, others, options, quiet);
   score.wall += watch.wall() * share, score.cpu += watch.cpu() * share;
 
   const double scale = q.camera.scale;
-  const PatchImage look{{intensity(q.image)}, q.mask};
+  const synthesis::PatchImage look{{depth::intensity(q.image)}, q.mask};
   cv::Mat mean = cv::Mat::zeros(q.depth.size(), CV_32F), back = mean.clone(), nearest;
   double least = 1e30;
   for (int i = 0; i < others.size(); ++i) {
-    const Example e = others.get(i, view);
+    const examples::Example e = others.get(i, view);
     const double middle = cv::mean(e.depth, e.mask)[0];
     const cv::Mat depth = moved((e.depth - middle) * e.camera.scale, e, q);
     mean += depth / others.size();
     if (!e.back_depth.empty()) back += moved((e.back_depth - middle) * e.camera.scale, e, q) / others.size();
-    const double d = image_difference(look, {{intensity(e.image)}, e.mask});
+    const double d = depth::image_difference(look, {{depth::intensity(e.image)}, e.mask});
     if (d < least) least = d, nearest = depth;
   }
   score.ours.add(compare(r.depth * r.camera.scale, q.depth * scale, q.mask), share);
@@ -136,7 +136,7 @@ void measure(ExampleSource& all, int k, const View& view, const DepthOptions& op
     score.back.add(compare(r.back_depth * r.camera.scale, q.back_depth * scale, q.mask), share);
     score.back_mean.add(compare(back, q.back_depth * scale, q.mask), share);
   }
-  const double away = angle_between(r.view, view);
+  const double away = examples::angle_between(r.view, view);
   score.angle += away * share;
   score.found += away <= 5;
   ++score.count;
@@ -150,7 +150,7 @@ void accuracy(int every) {
                "mean's", "nearest's", "back", "of mean", "wall s", "cpu s"});
   for (const char* name : {"heads", "hands", "bodies"}) {
     const auto all = open(name);
-    DepthOptions options;
+    depth::DepthOptions options;
     options.update_views = options.align = false;
     options.back = true;
     Score s;
@@ -176,7 +176,7 @@ void views(int every) {
     const int n = (all->size() + every - 1) / every;
     for (int k = 0; k < all->size(); k += every) {
       const double yaw = uniform(35), pitch = uniform(25);
-      DepthOptions options;
+      depth::DepthOptions options;
       options.align = false;
       options.update_views = !known;
       if (known) options.views = {{yaw, pitch}};
@@ -191,26 +191,27 @@ void ablations(int every) {
   Table table("Heads seen from (0, -22) (thesis Fig. 18, 19), error as a share of the depth range",
               {"variant", "error", "of mean", "normals"});
   const auto all = open("heads");
-  const std::vector<View> four{{-20, 0}, {20, 0}, {-20, -40}, {20, -40}};
-  DepthOptions plain;
+  const std::vector<render::View> four{{-20, 0}, {20, 0}, {-20, -40}, {20, -40}};
+  depth::DepthOptions plain;
   plain.align = false;
-  std::vector<std::pair<std::string, DepthOptions>> variants;
-  const auto add = [&](const char* name, std::vector<View> from, bool update,
-                       const std::function<void(DepthOptions&)>& change) {
-    DepthOptions o = plain;
+  std::vector<std::pair<std::string, depth::DepthOptions>> variants;
+  const auto add = [&](const char* name, std::vector<render::View> from, bool update,
+                       const std::function<void(depth::DepthOptions&)>& change) {
+    depth::DepthOptions o = plain;
     o.views = std::move(from), o.update_views = o.update_objects = update;
     change(o);
     variants.push_back({name, o});
   };
-  const auto nothing = [](DepthOptions&) {};
+  const auto nothing = [](depth::DepthOptions&) {};
   add("one wrong view (0, 0)", {{0, 0}}, false, nothing);
   add("four fixed views", four, false, nothing);
   add("four views, updated", four, true, nothing);
   add("the view known", {{0, -22}}, false, nothing);
-  add("... without iterations", {{0, -22}}, false, [](DepthOptions& o) { o.max_iterations = 1, o.patch_sizes = {9}; });
-  add("... without position", {{0, -22}}, false, [](DepthOptions& o) { o.position = 0; });
-  add("... without silhouettes", {{0, -22}}, false, [](DepthOptions& o) { o.silhouette = 0; });
-  add("... without depth", {{0, -22}}, false, [](DepthOptions& o) { o.depth = 0; });
+  add("... without iterations", {{0, -22}}, false,
+      [](depth::DepthOptions& o) { o.max_iterations = 1, o.patch_sizes = {9}; });
+  add("... without position", {{0, -22}}, false, [](depth::DepthOptions& o) { o.position = 0; });
+  add("... without silhouettes", {{0, -22}}, false, [](depth::DepthOptions& o) { o.silhouette = 0; });
+  add("... without depth", {{0, -22}}, false, [](depth::DepthOptions& o) { o.depth = 0; });
   const int n = (all->size() + every - 1) / every;
   for (const auto& [name, options] : variants) {
     Score s;
@@ -224,7 +225,7 @@ void sizes(int every) {
               {"size", "error", "of mean", "normals", "wall s", "cpu s", "cpu s a megapixel"});
   for (const int width : {75, 150, 300, 600}) {
     const auto all = open("heads", width, width * 4 / 3);
-    DepthOptions options;
+    depth::DepthOptions options;
     options.update_views = options.align = false;
     Score s;
     const int step = std::max(every, 6), n = (all->size() + step - 1) / step;
@@ -242,10 +243,10 @@ void speed() {
       [] {
         const auto all = open("heads", 200, 150);
         Others others(*all, 0);
-        const Example q = all->get(0, {10, 5});
+        const examples::Example q = all->get(0, {10, 5});
         Progress quiet;
         const Stopwatch watch;
-        reconstruct_depth({q.image, q.mask}, others, {}, quiet);
+        depth::reconstruct_depth({q.image, q.mask}, others, {}, quiet);
         return std::vector<double>{watch.wall(), watch.cpu()};
       },
       120);
@@ -256,19 +257,20 @@ void speed() {
       [] {
         // Every pixel of query and examples is foreground: a plane with what the heads look like.
         const auto all = open("heads", 200, 150);
-        std::vector<PatchImage> examples;
+        std::vector<synthesis::PatchImage> examples;
         for (int k = 0; k < 13; ++k) {
-          const Example e = all->get(k, {0, 0});
+          const examples::Example e = all->get(k, {0, 0});
           const double middle = cv::mean(e.depth, e.mask)[0];
-          examples.push_back({{extend(intensity(e.image), e.mask), extend((e.depth - middle) * e.camera.scale, e.mask)},
+          examples.push_back({{synthesis::extend(depth::intensity(e.image), e.mask),
+                               synthesis::extend((e.depth - middle) * e.camera.scale, e.mask)},
                               cv::Mat(e.mask.size(), CV_8U, cv::Scalar(255))});
         }
-        PatchImage query = examples.back();
+        synthesis::PatchImage query = examples.back();
         query.planes[1] = cv::Mat();
         examples.pop_back();
         Progress quiet;
         const Stopwatch watch;
-        synthesize(query, examples, synthesis_options({}), {}, quiet);
+        synthesis::synthesize(query, examples, depth::synthesis_options({}), {}, quiet);
         return std::vector<double>{watch.wall(), watch.cpu()};
       },
       120);
@@ -279,11 +281,12 @@ void speed() {
 }
 
 /// Windows as rows, weighted as the query's are where all of them is foreground.
-std::vector<float> rows(const LevelExample& e, const std::vector<Match>& windows, const PatchLayout& layout) {
+std::vector<float> rows(const synthesis::LevelExample& e, const std::vector<synthesis::Match>& windows,
+                        const synthesis::PatchLayout& layout) {
   std::vector<float> all;
-  Window w;
-  for (const Match& m : windows) {
-    gather(e.plane, e.coverage, m.x, m.y, layout, w);
+  synthesis::Window w;
+  for (const synthesis::Match& m : windows) {
+    synthesis::gather(e.plane, e.coverage, m.x, m.y, layout, w);
     for (int i = 0; i < layout.window(); ++i) {
       const float g = std::sqrt(layout.gaussian[i / layout.lanes]);
       for (int c = 0; c < 4; ++c) all.push_back(w.value[i][c] * g);
@@ -293,8 +296,8 @@ std::vector<float> rows(const LevelExample& e, const std::vector<Match>& windows
   return all;
 }
 
-std::vector<Match> inside(const LevelExample& e, int k) {
-  std::vector<Match> list;
+std::vector<synthesis::Match> inside(const synthesis::LevelExample& e, int k) {
+  std::vector<synthesis::Match> list;
   for (int y = 0; y < e.plane.height; ++y)
     for (int x = 0; x < e.plane.width; ++x)
       if (e.plane.inside[e.plane.index(x, y)]) list.push_back({k, x, y});
@@ -306,14 +309,14 @@ struct Searched {
 };
 
 /// FLANN's randomised kd-trees over whole rows; what they propose is scored like ours.
-Searched search_flann(const LevelExample& query, const std::vector<LevelExample>& examples, const PatchLayout& layout,
-                      int checks) {
+Searched search_flann(const synthesis::LevelExample& query, const std::vector<synthesis::LevelExample>& examples,
+                      const synthesis::PatchLayout& layout, int checks) {
   Searched result;
   const Stopwatch building;
-  std::vector<Match> windows;
+  std::vector<synthesis::Match> windows;
   std::vector<float> data;
   for (size_t k = 0; k < examples.size(); ++k) {
-    const std::vector<Match> some = inside(examples[k], int(k));
+    const std::vector<synthesis::Match> some = inside(examples[k], int(k));
     const std::vector<float> more = rows(examples[k], some, layout);
     windows.insert(windows.end(), some.begin(), some.end());
     data.insert(data.end(), more.begin(), more.end());
@@ -325,7 +328,7 @@ Searched search_flann(const LevelExample& query, const std::vector<LevelExample>
   index.buildIndex();
   result.build = building.cpu();
   const Stopwatch watch;
-  const std::vector<Match> asked = inside(query, 0);
+  const std::vector<synthesis::Match> asked = inside(query, 0);
   std::vector<float> points = rows(query, asked, layout), distances(asked.size());
   std::vector<int> found(asked.size());
   flann::Matrix<int> indices(found.data(), asked.size(), 1);
@@ -333,28 +336,28 @@ Searched search_flann(const LevelExample& query, const std::vector<LevelExample>
   index.knnSearch(flann::Matrix<float>(points.data(), asked.size(), columns), indices, far, 1,
                   flann::SearchParams(checks));
   result.cpu = watch.cpu();
-  Window w;
+  synthesis::Window w;
   for (size_t i = 0; i < asked.size(); ++i) {
-    gather(query.plane, query.coverage, asked[i].x, asked[i].y, layout, w);
-    const Match& m = windows[found[i]];
-    result.squares += distance(w, examples[m.example].plane, m.x, m.y, layout, 1e30f);
+    synthesis::gather(query.plane, query.coverage, asked[i].x, asked[i].y, layout, w);
+    const synthesis::Match& m = windows[found[i]];
+    result.squares += synthesis::distance(w, examples[m.example].plane, m.x, m.y, layout, 1e30f);
   }
   return result;
 }
 
 /// The engine's own search of one level, its tree and its two passes.
-Searched search_ours(const LevelExample& query, const std::vector<LevelExample>& examples, const PatchLayout& layout,
-                     bool exact) {
+Searched search_ours(const synthesis::LevelExample& query, const std::vector<synthesis::LevelExample>& examples,
+                     const synthesis::PatchLayout& layout, bool exact) {
   Searched result;
   const Stopwatch building;
-  std::unique_ptr<PatchTree> tree;
-  if (!exact) tree = std::make_unique<PatchTree>(examples, layout, 60000, 0, 0);
+  std::unique_ptr<synthesis::PatchTree> tree;
+  if (!exact) tree = std::make_unique<synthesis::PatchTree>(examples, layout, 60000, 0, 0);
   result.build = building.cpu();
   const Stopwatch watch;
-  std::vector<Match> matches(size_t(query.plane.width) * query.plane.height);
-  search(query.plane, query.coverage, examples, layout, tree.get(), 0, matches);
+  std::vector<synthesis::Match> matches(size_t(query.plane.width) * query.plane.height);
+  synthesis::search(query.plane, query.coverage, examples, layout, tree.get(), 0, matches);
   result.cpu = watch.cpu();
-  for (const Match& m : matches)
+  for (const synthesis::Match& m : matches)
     if (m.example >= 0) result.squares += m.distance;
   return result;
 }
@@ -363,20 +366,22 @@ void search() {
   Table table("The search of windows of 9 x 9: heads, 150 x 200, 12 examples, depth known",
               {"", "mean squared distance", "of exact", "index, cpu s", "cpu us a query"});
   const auto all = open("heads");
-  const SynthesisOptions options = synthesis_options({});
-  std::vector<ImagePyramid> pyramids;
+  const synthesis::SynthesisOptions options = depth::synthesis_options({});
+  std::vector<synthesis::ImagePyramid> pyramids;
   for (int k = 0; k < 13; ++k) {
-    const Example e = all->get(k, {0, 0});
+    const examples::Example e = all->get(k, {0, 0});
     const double middle = cv::mean(e.depth, e.mask)[0];
-    pyramids.push_back(make_pyramid({{intensity(e.image), (e.depth - middle) * e.camera.scale}, e.mask}, 1));
+    pyramids.push_back(
+        synthesis::make_pyramid({{depth::intensity(e.image), (e.depth - middle) * e.camera.scale}, e.mask}, 1));
   }
-  const ImagePyramid asked = pyramids.front();
+  const synthesis::ImagePyramid asked = pyramids.front();
   pyramids.erase(pyramids.begin());
   const double queries = cv::countNonZero(asked.coverage[0] >= 0.5f);
-  const LevelSetup setup = make_setup(pyramids, options, 0, 9, std::sqrt(queries));
-  std::vector<LevelExample> examples;
-  for (const ImagePyramid& p : pyramids) examples.push_back(make_level_example(p, options, setup));
-  const LevelExample query = make_level_example(asked, options, setup);
+  const synthesis::LevelSetup setup = synthesis::make_setup(pyramids, options, 0, 9, std::sqrt(queries));
+  std::vector<synthesis::LevelExample> examples;
+  for (const synthesis::ImagePyramid& p : pyramids)
+    examples.push_back(synthesis::make_level_example(p, options, setup));
+  const synthesis::LevelExample query = synthesis::make_level_example(asked, options, setup);
   const Searched exact = search_ours(query, examples, setup.layout, true);
   const auto add = [&](const char* name, const Searched& s) {
     table.row(
@@ -398,7 +403,7 @@ void light(int every) {
     lit->set_light({{-0.6, 0.1, 0.8}, 0.35});
     const int n = (all->size() + every - 1) / every;
     for (const int what : {0, 1, 2}) {
-      DepthOptions options;
+      depth::DepthOptions options;
       options.update_views = options.align = false;
       options.update_light = what == 1;
       Score s;

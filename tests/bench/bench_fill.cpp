@@ -77,7 +77,7 @@ struct Error {
 };
 
 Error error_of(const Damaged& d, const Mesh& mesh) {
-  const ClosestFace closest(mesh);
+  const spatial::ClosestFace closest(mesh);
   double sum = 0, outer = 0;
   long count = 0;
   for (std::size_t i = 0; i < d.truth.size(); ++i) {
@@ -118,7 +118,7 @@ class Bench {
   void keep(const std::string& name, const Mesh& mesh) const {
     if (const std::string folder = value("keep", ""); !folder.empty()) {
       fs::create_directories(folder);
-      write_mesh(mesh, folder + "/" + name + ".ply");
+      io::write_mesh(mesh, folder + "/" + name + ".ply");
     }
   }
   void measure(const MemberClass& members, const DamageCase& what, Table& holes, Table& flaws) const;
@@ -131,22 +131,22 @@ class Bench {
 
 Mesh Bench::mend(const MemberClass& members, std::size_t which, const DamageCase& what, const Damaged& damaged,
                  bool fit) const {
-  MlpProject project;
+  io::MlpProject project;
   for (std::size_t i = 0; i < members.members.size(); ++i)
     if (const std::string& file = members.members[i].file; i != which)
       project.meshes.push_back({fs::path(file).stem().string(), file, Eigen::Matrix4d::Identity()});
   const std::string mlp = work_ + "/" + members.name + "_without_" + std::to_string(which) + ".mlp";
-  write_mlp(project, mlp);
+  io::write_mlp(project, mlp);
   Progress silent;
-  const ModelDatabase database(mlp, silent);
-  MendOptions options;
+  const io::ModelDatabase database(mlp, silent);
+  mend::MendOptions options;
   options.fill = what.kind == DamageCase::Hole;
   options.region = damaged.region;
   if (const int blend = std::stoi(value("blend", "0")); blend > 0) options.restore.blend = blend;
   options.search.candidates = options.restore.tries;
   options.restore.fit_to_rim = fit;
   if (!fit) options.restore.blend = 1;
-  return mend_scan(damaged.scan, database, options, silent).mesh;
+  return mend::mend_scan(damaged.scan, database, options, silent).mesh;
 }
 
 void Bench::measure(const MemberClass& members, const DamageCase& what, Table& holes, Table& flaws) const {

@@ -18,20 +18,20 @@ using namespace parts::bench;
 
 namespace {
 
-JointVoxels rasterized(const Scene& s, const Grid& grid) {
-  return join(grid, rasterize(s.a.mesh, {}, grid, 1), rasterize(s.b.mesh, {}, grid, 1),
-              rasterize(s.a.mesh, s.a.keep, grid, 1), rasterize(s.b.mesh, s.b.keep, grid, 1));
+cut::JointVoxels rasterized(const Scene& s, const cut::Grid& grid) {
+  return cut::join(grid, cut::rasterize(s.a.mesh, {}, grid, 1), cut::rasterize(s.b.mesh, {}, grid, 1),
+                   cut::rasterize(s.a.mesh, s.a.keep, grid, 1), cut::rasterize(s.b.mesh, s.b.keep, grid, 1));
 }
 
 /// Equations 1 and 2 as integers: every weight times 100 n k.
 struct Capacities {
   std::int64_t boundary, intersection, empty;
-  explicit Capacities(const JointVoxels& v) {
+  explicit Capacities(const cut::JointVoxels& v) {
     std::int64_t n = std::int64_t(v.grid.count()), k = 1;
     for (int p = 0; p < v.size(); ++p) k += v.both(p);
     boundary = 100 * n * k, intersection = 10 * n, empty = 1;
   }
-  std::int64_t of_voxel(const JointVoxels& v, std::size_t voxel) const {
+  std::int64_t of_voxel(const cut::JointVoxels& v, std::size_t voxel) const {
     const int p = v.set.node(voxel);
     return p < 0 ? empty : v.both(p) ? intersection : boundary;
   }
@@ -39,8 +39,8 @@ struct Capacities {
 
 /// Calls visit(voxel, voxel, capacity) for every edge of the full grid.
 template <class Visit>
-void for_each_grid_edge(const JointVoxels& v, const Visit& visit) {
-  const Grid& g = v.grid;
+void for_each_grid_edge(const cut::JointVoxels& v, const Visit& visit) {
+  const cut::Grid& g = v.grid;
   const Capacities capacities(v);
   for (std::size_t p = 0; p < g.count(); ++p) {
     const std::array<int, 3> c = g.cell(p);
@@ -53,38 +53,38 @@ void for_each_grid_edge(const JointVoxels& v, const Visit& visit) {
 
 using Labels = std::vector<char>;  // per surface voxel: on A's side
 
-Labels ours(const JointVoxels& v) {
-  const VoxelLabels cut = thesis_cut(v);
+Labels ours(const cut::JointVoxels& v) {
+  const cut::VoxelLabels cut = cut::thesis_cut(v);
   Labels labels;
-  for (std::int8_t l : cut.label) labels.push_back(l == VoxelLabels::kA);
+  for (std::int8_t l : cut.label) labels.push_back(l == cut::VoxelLabels::kA);
   return labels;
 }
 
-Labels with_maxflow(const JointVoxels& v) {
+Labels with_maxflow(const cut::JointVoxels& v) {
   using Graph = maxflow::Graph<std::int64_t, std::int64_t, std::int64_t>;
   const int n = int(v.grid.count());
   Graph graph(n, 3 * n);
   graph.add_node(n);
   for_each_grid_edge(v, [&](int p, int q, std::int64_t w) { graph.add_edge(p, q, w, w); });
   for (int p = 0; p < v.size(); ++p)
-    if (v.flags[p] & (kKeepA | kKeepB))
-      graph.add_tweights(int(v.cells[p]), v.flags[p] & kKeepA ? kUncuttableTerminal : 0,
-                         v.flags[p] & kKeepB ? kUncuttableTerminal : 0);
+    if (v.flags[p] & (cut::kKeepA | cut::kKeepB))
+      graph.add_tweights(int(v.cells[p]), v.flags[p] & cut::kKeepA ? cut::kUncuttableTerminal : 0,
+                         v.flags[p] & cut::kKeepB ? cut::kUncuttableTerminal : 0);
   graph.maxflow();
   Labels labels;
   for (std::size_t c : v.cells) labels.push_back(graph.what_segment(int(c), Graph::SINK) == Graph::SOURCE);
   return labels;
 }
 
-Labels with_opencv(const JointVoxels& v) {
+Labels with_opencv(const cut::JointVoxels& v) {
   const int n = int(v.grid.count());
   cv::detail::GCGraph<std::int64_t> graph(n, 6 * n);
   for (int p = 0; p < n; ++p) graph.addVtx();
   for_each_grid_edge(v, [&](int p, int q, std::int64_t w) { graph.addEdges(p, q, w, w); });
   for (int p = 0; p < v.size(); ++p)
-    if (v.flags[p] & (kKeepA | kKeepB))
-      graph.addTermWeights(int(v.cells[p]), v.flags[p] & kKeepA ? kUncuttableTerminal : 0,
-                           v.flags[p] & kKeepB ? kUncuttableTerminal : 0);
+    if (v.flags[p] & (cut::kKeepA | cut::kKeepB))
+      graph.addTermWeights(int(v.cells[p]), v.flags[p] & cut::kKeepA ? cut::kUncuttableTerminal : 0,
+                           v.flags[p] & cut::kKeepB ? cut::kUncuttableTerminal : 0);
   graph.maxFlow();
   Labels labels;
   for (std::size_t c : v.cells) labels.push_back(graph.inSourceSegment(int(c)));
@@ -92,23 +92,24 @@ Labels with_opencv(const JointVoxels& v) {
 }
 
 /// Processor seconds, boundary and intersection edges that the labels cut.
-std::vector<double> solve(const Scene& scene, const Grid& grid, Labels (*solver)(const JointVoxels&)) {
-  const JointVoxels v = rasterized(scene, grid);
+std::vector<double> solve(const Scene& scene, const cut::Grid& grid, Labels (*solver)(const cut::JointVoxels&)) {
+  const cut::JointVoxels v = rasterized(scene, grid);
   Labels labels;
   const Times t = best_of([&] { labels = solver(v); });
   double boundary = 0, intersection = 0;
-  for_each_edge(grid, v.set, v.cells, [&](int p, int q) {
+  cut::for_each_edge(grid, v.set, v.cells, [&](int p, int q) {
     if (labels[p] != labels[q]) ++(v.both(p) || v.both(q) ? intersection : boundary);
   });
   return {t.cpu, boundary, intersection};
 }
 
 void compare(Table& table, const Scene& scene, int size) {
-  const Grid grid = Grid::over(bounds(scene.a, scene.b), size - 2);
+  const cut::Grid grid = cut::Grid::over(bounds(scene.a, scene.b), size - 2);
   const std::string name = scene.name + " " + std::to_string(grid.dims[0]) + "×" + std::to_string(grid.dims[1]) + "×" +
                            std::to_string(grid.dims[2]);
   Child first;
-  const auto row = [&](const char* contender, Labels (*solver)(const JointVoxels&), double faster, double smaller) {
+  const auto row = [&](const char* contender, Labels (*solver)(const cut::JointVoxels&), double faster,
+                       double smaller) {
     const Child c = in_child([&] { return solve(scene, grid, solver); }, 3000);
     if (!c.ended) return table.row({name, contender, "failed, or more than 3000 s"});
     const bool us = faster == 0;

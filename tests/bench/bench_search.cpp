@@ -53,7 +53,7 @@ Class same_vertices(const std::string& name, std::vector<std::string> files,
   Class c;
   c.name = name;
   c.files = std::move(files);
-  for (const std::string& f : c.files) c.meshes.push_back(read_mesh(f));
+  for (const std::string& f : c.files) c.meshes.push_back(io::read_mesh(f));
   if (c.files.size() <= reference) return {};
   const Mesh& first = c.meshes[reference];
   const Vec3 at = center_of(first, key);
@@ -73,7 +73,7 @@ Class busts(const fs::path& folder, int count) {
     c.meshes.push_back(test::bust_mesh(shape));
     c.files.push_back((folder / ("bust_" + std::to_string(i) + ".ply")).string());
     places.push_back(test::bust_landmarks(shape).nose_tip);
-    write_mesh(c.meshes.back(), c.files.back());
+    io::write_mesh(c.meshes.back(), c.files.back());
   }
   c.place = [places](int i) { return places[std::size_t(i)]; };
   return c;
@@ -91,11 +91,11 @@ Found run(const Class& c, const Task& task, int i, const fs::path& folder) {
   const Mesh& whole = c.meshes[std::size_t(i)];
   const Vec3 at = c.place(i);
   const double radius = task.radius * whole.bounds().diagonal().norm();
-  SearchQuery query;
-  query.mesh = take_faces(whole, test::faces_where(whole, [&](const Vec3& p) {
-                            const double d = (p - at).norm();
-                            return d > radius && (!task.partial || d < 4 * radius);
-                          }));
+  search::SearchQuery query;
+  query.mesh = mesh::take_faces(whole, test::faces_where(whole, [&](const Vec3& p) {
+                                  const double d = (p - at).norm();
+                                  return d > radius && (!task.partial || d < 4 * radius);
+                                }));
   const Eigen::AngleAxisd turn(random.uniform(0, task.turn) * M_PI / 180, random.direction());
   const double scale = task.units * random.uniform(1 - task.scale, 1 + task.scale);
   Eigen::Affine3d motion = Eigen::Affine3d::Identity();
@@ -105,21 +105,21 @@ Found run(const Class& c, const Task& task, int i, const fs::path& folder) {
   const Vec3 half = Vec3::Constant(1.35 * radius * scale);
   query.region = Box(motion * at - half, motion * at + half);
 
-  MlpProject project;
+  io::MlpProject project;
   std::vector<int> model_of;
   for (int m = 0; m < int(c.files.size()); ++m)
     if (m != i)
       project.meshes.push_back({fs::path(c.files[std::size_t(m)]).stem().string(), c.files[std::size_t(m)]}),
           model_of.push_back(m);
   const std::string path = (folder / ("others.mlp")).string();
-  write_mlp(project, path);
+  io::write_mlp(project, path);
   Progress silent;
-  const ModelDatabase database(path, silent);
+  const io::ModelDatabase database(path, silent);
   Found found;
-  std::vector<Candidate> candidates;
-  SearchOptions options;
+  std::vector<search::Candidate> candidates;
+  search::SearchOptions options;
   Stopwatch watch;
-  candidates = find_similar(query, database, options, silent);
+  candidates = search::find_similar(query, database, options, silent);
   found.time = {watch.wall(), watch.cpu()};
   found.model = model_of[std::size_t(candidates[0].model)];
   found.error = (candidates[0].placement * c.place(found.model) - motion * at).norm() / (radius * scale);
@@ -151,14 +151,14 @@ void measure(const Class& c, const std::vector<Task>& tasks, int most, const fs:
 
 /// A database of so many models: those of the class, over and over with other matrices.
 std::string repeated(const Class& c, int models, const fs::path& folder) {
-  MlpProject project;
+  io::MlpProject project;
   for (int m = 0; m < models; ++m) {
-    MlpMesh mesh{std::to_string(m), c.files[std::size_t(m) % c.files.size()]};
+    io::MlpMesh mesh{std::to_string(m), c.files[std::size_t(m) % c.files.size()]};
     mesh.matrix(0, 3) = m;
     project.meshes.push_back(mesh);
   }
   const std::string path = (folder / (std::to_string(models) + ".mlp")).string();
-  write_mlp(project, path);
+  io::write_mlp(project, path);
   return path;
 }
 
@@ -171,15 +171,15 @@ void measure_time(const Class& c, const fs::path& folder) {
       const std::string path = repeated(c, models, folder);
       const Child child = in_child(
           [&] {
-            SearchQuery query;
+            search::SearchQuery query;
             query.mesh = test::without_ball(c.meshes[0], c.place(0), 0.09 * c.meshes[0].bounds().diagonal().norm());
             const Vec3 half = Vec3::Constant(0.12 * c.meshes[0].bounds().diagonal().norm());
             query.region = Box(c.place(0) - half, c.place(0) + half);
             double calls = 0;
             Progress progress([&](int, const char*) { return ++calls > 0; });
             const Stopwatch watch;
-            const ModelDatabase database(path, progress);
-            find_similar(query, database, {}, progress);
+            const io::ModelDatabase database(path, progress);
+            search::find_similar(query, database, {}, progress);
             return std::vector<double>{watch.wall(), watch.cpu(), calls};
           },
           300);

@@ -91,7 +91,7 @@ struct Outcome {
 Outcome ours(const Scene& scene) {
   Outcome o;
   Progress silent;
-  o.times = best_of([&] { o.mesh = compose(scene.a, scene.b, {}, silent).composed; });
+  o.times = best_of([&] { o.mesh = compose::compose(scene.a, scene.b, {}, silent).composed; });
   return o;
 }
 
@@ -163,8 +163,9 @@ Scene man_on_camel() {
   Mesh man = demo_mesh("man.off"), camel = demo_mesh("camel.off");
   for (Vec3& p : man.vertices) p = 0.35 * Vec3(p[0], p[2], -p[1]);
   move(man, {0, 0.453, -0.14});
-  std::vector<char> torso = constrained_faces(man, ConstraintBy::Box, {-1, 0.5, -1}, {1, 1, 1}, "A");
-  std::vector<char> legs = constrained_faces(camel, ConstraintBy::Box, {-1, -1, -1}, {1, 0.1, 1}, "B");
+  std::vector<char> torso = compose::constrained_faces(man, compose::ConstraintBy::Box, {-1, 0.5, -1}, {1, 1, 1}, "A");
+  std::vector<char> legs =
+      compose::constrained_faces(camel, compose::ConstraintBy::Box, {-1, -1, -1}, {1, 0.1, 1}, "B");
   return {"man on camel", {std::move(man), std::move(torso)}, {std::move(camel), std::move(legs)}};
 }
 

@@ -33,12 +33,13 @@ Vec3 landmark(const fs::path& head, const std::string& name) {
 /// Per vertex: a face of it shows in one of 26 views.
 std::vector<char> seen_from_outside(const Mesh& mesh) {
   std::vector<char> seen(mesh.vertices.size(), 0);
-  RenderOptions options;
+  render::RenderOptions options;
   options.colors = false;
   for (int yaw = 0; yaw < 360; yaw += 45)
     for (int pitch = -45; pitch <= 45; pitch += 45) {
-      const Eigen::Matrix3d turn = view_rotation({double(yaw), double(pitch)}, Vec3::UnitY(), Vec3::UnitZ());
-      const Rendering r = render(mesh, {}, orthographic_camera(turn, mesh.bounds(), 300, 300), options);
+      const Eigen::Matrix3d turn = render::view_rotation({double(yaw), double(pitch)}, Vec3::UnitY(), Vec3::UnitZ());
+      const render::Rendering r =
+          render::render(mesh, {}, render::orthographic_camera(turn, mesh.bounds(), 300, 300), options);
       for (int y = 0; y < r.face.rows; ++y)
         for (int x = 0; x < r.face.cols; ++x)
           if (const int f = r.face.at<int>(y, x); f >= 0)
@@ -50,7 +51,7 @@ std::vector<char> seen_from_outside(const Mesh& mesh) {
 Member read_member(const std::string& file) {
   Member m;
   m.file = file;
-  m.mesh = prepare(read_mesh(file)).mesh;
+  m.mesh = mesh::prepare(io::read_mesh(file)).mesh;
   m.mesh.wedges.clear(), m.mesh.textures.clear();
   return m;
 }
@@ -58,7 +59,7 @@ Member read_member(const std::string& file) {
 Mesh dented(const Mesh& whole, const Vec3& at, const DamageCase& c, double radius, double unit, unsigned seed,
             std::vector<char>& touched) {
   Mesh scan = whole;
-  update_normals(scan);
+  mesh::update_normals(scan);
   std::mt19937 random(seed);
   const auto noise = [&] { return double(random()) / 4294967296.0 - 0.5; };
   const Vec3 along = Vec3(noise(), noise(), noise()).normalized();  // of a gouge: its walls face this way
@@ -134,7 +135,7 @@ MemberClass busts(const std::string& folder, int count) {
   for (int i = 0; i < count; ++i) {
     const test::BustShape shape = test::random_bust(unsigned(100 + i));
     const std::string file = (fs::path(folder) / ("bust_" + std::to_string(i) + ".ply")).string();
-    write_mesh(test::bust_mesh(shape), file);
+    io::write_mesh(test::bust_mesh(shape), file);
     Member m = read_member(file);
     const test::BustLandmarks at = test::bust_landmarks(shape);
     m.nose_tip = at.nose_tip, m.crown = at.crown, m.unit = 2 * shape.eye_distance;
@@ -152,7 +153,7 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
     std::vector<char> outside(whole.faces.size());
     for (int f = 0; f < whole.face_count(); ++f)
       for (int v : whole.faces[f]) outside[f] |= outer[v];
-    at = ClosestFace(whole, outside)(at).point;
+    at = spatial::ClosestFace(whole, outside)(at).point;
   }
   Damaged d;
   std::vector<char> gone(whole.faces.size(), 0), touched(whole.vertices.size(), 0);
@@ -164,7 +165,7 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
       if (gone[f])
         for (int v : whole.faces[f]) touched[v] = 1;
     }
-    d.scan = take_faces(whole, stays);
+    d.scan = mesh::take_faces(whole, stays);
   } else {
     d.scan = dented(whole, at, what, radius, member.unit, seed, touched);
     for (int f = 0; f < whole.face_count(); ++f)
@@ -174,7 +175,7 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
   for (int v = 0; v < whole.vertex_count(); ++v)
     if (touched[v]) d.truth.push_back(whole.vertices[v]), d.outer.push_back(outer[v]);
   if (what.kind == DamageCase::Hole || what.box) {
-    d.region.by = RegionBy::Box;
+    d.region.by = mend::RegionBy::Box;
     for (const Vec3& p : d.truth) d.region.box.extend(p);
     const double margin = what.box ? 0.5 * what.radius : 0.17;
     d.region.box.min().array() -= margin * member.unit, d.region.box.max().array() += margin * member.unit;

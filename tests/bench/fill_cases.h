@@ -47,7 +47,7 @@ extern const std::vector<DamageCase> kDamageCases;
 
 struct Damaged {
   Mesh scan;
-  RegionOptions region;
+  mend::RegionOptions region;
   std::vector<Vec3> truth;  ///< the vertices that were removed or moved, as they were
   std::vector<char> outer;  ///< of these
 };

@@ -15,7 +15,7 @@ Mesh by_meshlab(const Mesh& scan, const std::string& folder, const std::string& 
   std::filesystem::create_directories(folder);
   const std::filesystem::path base = std::filesystem::path(folder) / name;
   const std::string in = base.string() + "_in.ply", out = base.string() + "_out.ply", mlx = base.string() + ".mlx";
-  write_mesh(scan, in);
+  io::write_mesh(scan, in);
   std::ofstream(mlx) << "<!DOCTYPE FilterScript>\n<FilterScript>\n" << filter << "</FilterScript>\n";
   std::filesystem::remove(out);
   const std::string command = "cd '" + folder +
@@ -23,7 +23,7 @@ Mesh by_meshlab(const Mesh& scan, const std::string& folder, const std::string& 
                               in + "' -o '" + out + "' -s '" + mlx + "' >'" + base.string() + ".log' 2>&1";
   if (std::system(command.c_str()) != 0 || !std::filesystem::exists(out))
     throw std::runtime_error(name + " failed, see " + base.string() + ".log");
-  return read_mesh(out);
+  return io::read_mesh(out);
 }
 
 std::string param(const char* type, const char* name, const char* value) {

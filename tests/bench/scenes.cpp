@@ -10,12 +10,12 @@ namespace parts::bench {
 namespace {
 
 /// The faces with x beyond the given share of the model's extent are kept.
-Part part(Mesh mesh, bool low_end) {
+cut::Part part(Mesh mesh, bool low_end) {
   constexpr double kShare = 0.2;
   Box box = mesh.bounds();
   const double x = low_end ? box.min()[0] + kShare * box.sizes()[0] : box.max()[0] - kShare * box.sizes()[0];
   (low_end ? box.max() : box.min())[0] = x;
-  std::vector<char> keep = constrained_faces(mesh, ConstraintBy::Box, box.min(), box.max(), "");
+  std::vector<char> keep = compose::constrained_faces(mesh, compose::ConstraintBy::Box, box.min(), box.max(), "");
   return {std::move(mesh), std::move(keep)};
 }
 
@@ -119,7 +119,7 @@ void move(Mesh& mesh, const Vec3& by) {
   for (Vec3& p : mesh.vertices) p += by;
 }
 
-Box bounds(const Part& a, const Part& b) { return a.mesh.bounds().merged(b.mesh.bounds()); }
+Box bounds(const cut::Part& a, const cut::Part& b) { return a.mesh.bounds().merged(b.mesh.bounds()); }
 
 Scene two_spheres(int faces) {
   const int n = side_for(faces);
@@ -161,7 +161,7 @@ Scene two_creatures(int faces) {
 
 void fit(Scene& scene, const Vec3& sides) {
   const Box box = bounds(scene.a, scene.b);
-  for (Part* p : {&scene.a, &scene.b})
+  for (cut::Part* p : {&scene.a, &scene.b})
     for (Vec3& v : p->mesh.vertices) v = (v - box.min()).cwiseQuotient(box.sizes()).cwiseProduct(sides);
 }
 

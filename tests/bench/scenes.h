@@ -20,12 +20,12 @@ Mesh tube(double half_length, double radius, int rings, int sides);
 Mesh torus(double large, double small, int around, int across);
 
 void move(Mesh& mesh, const Vec3& by);
-Box bounds(const Part& a, const Part& b);
+Box bounds(const cut::Part& a, const cut::Part& b);
 
 /// Two models that overlap, each with its far end to be kept.
 struct Scene {
   std::string name;
-  Part a, b;
+  cut::Part a, b;
 };
 
 /// About `faces` faces a model.

@@ -71,8 +71,8 @@ SeamQuality seam_quality(const Mesh& mesh, const std::vector<Vec3>& curve, doubl
   q.slivers /= q.faces, q.edge_ratio = ratios / q.faces;
 
   double weights = 0, sum = 0, squares = 0;
-  const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
-  for_each_mesh_edge(edges, [&](auto first, auto last) {
+  const std::vector<mesh::HalfEdge> edges = mesh::sorted_half_edges(mesh);
+  mesh::for_each_mesh_edge(edges, [&](auto first, auto last) {
     if (last - first != 2 || !zone[first->face] || !zone[first[1].face]) return;
     const Vec3 m = area_normal(mesh, first->face), n = area_normal(mesh, first[1].face);
     if (m.norm() == 0 || n.norm() == 0) return;
@@ -88,8 +88,8 @@ SeamQuality seam_quality(const Mesh& mesh, const std::vector<Vec3>& curve, doubl
 
 bool closed_and_oriented(const Mesh& mesh) {
   bool good = mesh.face_count() > 0;
-  for_each_mesh_edge(sorted_half_edges(mesh),
-                     [&](auto first, auto last) { good &= last - first == 2 && first->from == first[1].to; });
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(mesh),
+                           [&](auto first, auto last) { good &= last - first == 2 && first->from == first[1].to; });
   return good;
 }
 

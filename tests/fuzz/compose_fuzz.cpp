@@ -77,8 +77,8 @@ void dress(Mesh& mesh, Random& random) {
   }
 }
 
-Part random_part(Random& random) {
-  Part part{random_shape(random), {}};
+cut::Part random_part(Random& random) {
+  cut::Part part{random_shape(random), {}};
   spoil(part.mesh, random);
   dress(part.mesh, random);
   const Vec3 towards = random.direction();
@@ -87,10 +87,10 @@ Part random_part(Random& random) {
   return part;
 }
 
-ComposeOptions random_options(Random& random) {
-  ComposeOptions o;
+compose::ComposeOptions random_options(Random& random) {
+  compose::ComposeOptions o;
   o.resolution = random.below(4) ? 1 + random.below(40) : 0;
-  o.cut = random.below(2) ? Cut::Thesis : Cut::Refined;
+  o.cut = random.below(2) ? cut::Cut::Thesis : cut::Cut::Refined;
   o.stitch = random.below(5) > 0;
   o.transition_surface = random.below(2);
   o.threads = 1 + random.below(3);
@@ -120,16 +120,16 @@ bool sane(const Mesh& m) {
 bool survives(unsigned seed, bool& refused) {
   Random random(seed);
   const double scale = random.below(4) ? 1 : std::pow(10., random.uniform(-6, 6));
-  Part a = random_part(random), b = random_part(random);
+  cut::Part a = random_part(random), b = random_part(random);
   const Vec3 shift = random.direction() * random.uniform(0, 1.5);
   for (Vec3& v : b.mesh.vertices) v += shift;
-  ComposeOptions options = random_options(random);
-  for (Part* p : {&a, &b})
+  compose::ComposeOptions options = random_options(random);
+  for (cut::Part* p : {&a, &b})
     for (Vec3& v : p->mesh.vertices) v *= scale;
   if (!options.volume.isEmpty()) options.volume.min() *= scale, options.volume.max() *= scale;
   try {
     Progress silent;
-    const ComposeResult r = compose(a, b, options, silent);
+    const compose::ComposeResult r = compose::compose(a, b, options, silent);
     return sane(r.composed) && sane(r.clipped_a) && sane(r.clipped_b) && sane(r.transition) &&
            r.face_from_b.size() == r.composed.faces.size();
   } catch (const UserError&) {

@@ -8,17 +8,18 @@
 namespace parts::host {
 namespace {
 
-Camera some_camera(bool pinhole) {
-  const Eigen::Matrix3d rotation = view_rotation({30, 20}, {0, 1, 0}, {0, 0, 1});
+render::Camera some_camera(bool pinhole) {
+  const Eigen::Matrix3d rotation = render::view_rotation({30, 20}, {0, 1, 0}, {0, 0, 1});
   const Box box(Vec3(-1, -2, -1), Vec3(1, 2, 3));
-  Camera camera = pinhole ? pinhole_camera(rotation, box, 150, 200, 300) : orthographic_camera(rotation, box, 150, 200);
+  render::Camera camera =
+      pinhole ? pinhole_camera(rotation, box, 150, 200, 300) : render::orthographic_camera(rotation, box, 150, 200);
   camera.center += Eigen::Vector2d(3, -7);
   return camera;
 }
 
 TEST(Cameras, TheHostProjectsAsWeDo) {
   for (const bool pinhole : {false, true}) {
-    const Camera camera = some_camera(pinhole);
+    const render::Camera camera = some_camera(pinhole);
     const Shotm shot = to_shot(camera, 5);
     EXPECT_TRUE(shot.IsValid());
     for (const Vec3& p : {Vec3(0.3, -0.7, 0.2), Vec3(-1, 2, 1), Vec3(0, 0, 0)}) {
@@ -34,8 +35,8 @@ TEST(Cameras, TheHostProjectsAsWeDo) {
 
 TEST(Cameras, ComeBack) {
   for (const bool pinhole : {false, true}) {
-    const Camera camera = some_camera(pinhole);
-    const std::optional<Camera> back = to_camera(to_shot(camera, 5));
+    const render::Camera camera = some_camera(pinhole);
+    const std::optional<render::Camera> back = to_camera(to_shot(camera, 5));
     ASSERT_TRUE(back);
     EXPECT_EQ(back->width, 150);
     EXPECT_EQ(back->height, 200);

@@ -119,7 +119,7 @@ TEST_F(HostPlugin, LayersAreAddedAndInputsHidden) {
 }
 
 TEST_F(HostPlugin, RasterLayers) {
-  Camera camera;
+  render::Camera camera;
   camera.width = 60, camera.height = 80, camera.center = {30, 40};
   next = [&](const Inputs& in, Progress&) {
     EXPECT_FALSE(in.raster()) << "there is none";

@@ -111,7 +111,7 @@ Mesh bust_mesh(const BustShape& shape, const std::string& texture, int cells) {
   mesh = simplified(mesh, field, length_at);
   mesh.textures = {texture};
   for (int f = 0; f < mesh.face_count(); ++f) mesh.wedges.push_back(wedges_of(mesh, f));
-  update_normals(mesh);
+  mesh::update_normals(mesh);
   return mesh;
 }
 
@@ -122,13 +122,13 @@ BustLandmarks bust_landmarks(const BustShape& shape) {
 }
 
 Mesh without_ball(const Mesh& mesh, const Vec3& center, double radius) {
-  return take_faces(mesh, faces_where(mesh, [&](const Vec3& c) { return (c - center).norm() > radius; }));
+  return mesh::take_faces(mesh, faces_where(mesh, [&](const Vec3& c) { return (c - center).norm() > radius; }));
 }
 
 Mesh gouged(const Mesh& mesh, const Vec3& center, double radius, double depth, unsigned seed,
             std::vector<char>* faces) {
   Mesh damaged = mesh;
-  update_normals(damaged);
+  mesh::update_normals(damaged);
   const std::vector<Eigen::Vector3f> normals = damaged.vertex_normal;
   Random random(seed);
   const Vec3 along = random.direction();
@@ -143,7 +143,7 @@ Mesh gouged(const Mesh& mesh, const Vec3& center, double radius, double depth, u
   if (mesh.vertex_normal.empty())
     damaged.vertex_normal.clear();
   else
-    update_normals(damaged);
+    mesh::update_normals(damaged);
   if (faces) {
     faces->assign(mesh.faces.size(), 0);
     for (int f = 0; f < mesh.face_count(); ++f)

@@ -9,9 +9,9 @@
 namespace parts {
 
 /// Frames the box's sphere with a pinhole camera of that focal length (pixels).
-inline Camera pinhole_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height, double focal,
-                             double margin = 0.05) {
-  Camera camera = orthographic_camera(rotation, box, width, height);
+inline render::Camera pinhole_camera(const Eigen::Matrix3d& rotation, const Box& box, int width, int height,
+                                     double focal, double margin = 0.05) {
+  render::Camera camera = render::orthographic_camera(rotation, box, width, height);
   camera.scale = 1;
   camera.focal = focal;
   const double half = (1 - 2 * margin) / 2 * std::min(width, height);

@@ -29,7 +29,7 @@ class Simplifier {
     for (int i = 0; i < 5; ++i) flip_edges(), relax();
     std::vector<char> alive(mesh_.faces.size());
     for (int f = 0; f < mesh_.face_count(); ++f) alive[f] = mesh_.faces[f][0] >= 0;
-    return take_faces(mesh_, alive);
+    return mesh::take_faces(mesh_, alive);
   }
 
  private:

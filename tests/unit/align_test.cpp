@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Affine3d;
 
-AlignResult align(const Mesh& moving, const Mesh& fixed, const AlignOptions& options = {},
-                  const std::vector<char>& moving_part = {}, const std::vector<char>& fixed_part = {}) {
+align::AlignResult align(const Mesh& moving, const Mesh& fixed, const align::AlignOptions& options = {},
+                         const std::vector<char>& moving_part = {}, const std::vector<char>& fixed_part = {}) {
   Progress silent;
-  return align_part_in_whole(moving, moving_part, fixed, fixed_part, options, silent);
+  return align::align_part_in_whole(moving, moving_part, fixed, fixed_part, options, silent);
 }
 
 /// Somewhere else: any rotation, and further away than the shape is large.
@@ -33,7 +33,7 @@ double size_of(const Mesh& mesh) { return mesh.bounds().diagonal().norm(); }
 
 /// How far the result leaves the vertices, moved by `away` before, from where
 /// they were; RMS, as a share of the shape's size.
-double error(const AlignResult& result, const Affine3d& away, const Mesh& mesh) {
+double error(const align::AlignResult& result, const Affine3d& away, const Mesh& mesh) {
   double sum = 0;
   for (const Vec3& v : mesh.vertices) sum += (Affine3d(result.matrix) * (away * v) - v).squaredNorm();
   return std::sqrt(sum / mesh.vertex_count()) / size_of(mesh);
@@ -74,7 +74,7 @@ TEST(Align, FindsTheSameShapeFromAnyPlacement) {
   for (const Shape& s : shapes())
     for (int i = 0; i < 3; ++i) {
       const Affine3d away = anywhere(random, size_of(s.mesh));
-      const AlignResult r = align(moved(s.mesh, away), s.mesh);
+      const align::AlignResult r = align(moved(s.mesh, away), s.mesh);
       EXPECT_LT(error(r, away, s.mesh), 1e-5) << s.name << i;
       EXPECT_LT(r.rms_after, 1e-5 * size_of(s.mesh)) << s.name << i;
       EXPECT_GT(r.rms_before, 100 * r.rms_after) << s.name << i;
@@ -114,7 +114,7 @@ TEST(Align, FaceOrientationDoesNotMatter) {
 
 TEST(Align, ScalesOnlyWhereAllowed) {
   Random random(5);
-  AlignOptions scale;
+  align::AlignOptions scale;
   scale.allow_scale = true;
   for (const Shape& s : {Shape{"blob", blob(3)}, Shape{"bust", bust(1)}})
     for (double factor : {0.01, 0.6, 30.0}) {
@@ -129,7 +129,7 @@ TEST(Align, ScalesOnlyWhereAllowed) {
 
 TEST(Align, MirrorsOnlyWhereAllowedAndNeeded) {
   Random random(6);
-  AlignOptions mirror;
+  align::AlignOptions mirror;
   mirror.allow_mirror = true;
   for (const Shape& s : {Shape{"blob", blob(4)}, Shape{"step", step_shape(3)}}) {
     Affine3d away = anywhere(random, 3);
@@ -159,7 +159,7 @@ TEST(Align, FindsAPartInTheWhole) {
 
 TEST(Align, FindsWhereAnIncompleteModelBelongs) {
   Random random(8);
-  AlignOptions options;
+  align::AlignOptions options;
   options.overlap = 0.55;
   for (const Shape& s : shapes()) {
     const std::vector<char> rest = share_along(s.mesh, random.direction(), 0.6);
@@ -170,11 +170,11 @@ TEST(Align, FindsWhereAnIncompleteModelBelongs) {
 
 TEST(Align, OtherBustFacesTheSameWay) {
   Random random(9);
-  AlignOptions scale;
+  align::AlignOptions scale;
   scale.allow_scale = true;
   for (unsigned seed : {2u, 3u, 4u}) {
     const Affine3d away = anywhere(random, 2);
-    const AlignResult r = align(moved(bust(seed), away), bust(1), scale);
+    const align::AlignResult r = align(moved(bust(seed), away), bust(1), scale);
     const Eigen::Matrix3d turned = (Affine3d(r.matrix) * away).rotation();
     EXPECT_LT(degrees_between(turned, Eigen::Matrix3d::Identity()), 10) << seed;
     EXPECT_LT(r.rms_after, r.rms_before / 2) << seed;
@@ -194,7 +194,7 @@ TEST(Align, FarFromTheOriginAndTiny) {
   Affine3d far = Affine3d::Identity();
   far.translation() = Vec3(1e6, -1e6, 1e6);
   const Mesh fixed = moved(shape, far);
-  const AlignResult r = align(moved(fixed, Affine3d(Eigen::AngleAxisd(2, Vec3::UnitY()))), fixed);
+  const align::AlignResult r = align(moved(fixed, Affine3d(Eigen::AngleAxisd(2, Vec3::UnitY()))), fixed);
   EXPECT_LT(error(r, Affine3d(Eigen::AngleAxisd(2, Vec3::UnitY())), fixed), 1e-5);
   EXPECT_NEAR(r.rms_before, 2.4e6, 1.2e6);
 }
@@ -202,7 +202,7 @@ TEST(Align, FarFromTheOriginAndTiny) {
 TEST(Align, SymmetricShapesMoveNoMoreThanNeeded) {
   Affine3d away = Affine3d(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));
   away.translation() = Vec3(4, 1, 0);
-  const AlignResult ball = align(moved(sphere(), away), sphere());
+  const align::AlignResult ball = align(moved(sphere(), away), sphere());
   EXPECT_LT(ball.rms_after, 1e-2);
   EXPECT_LT((Affine3d(ball.matrix) * Vec3(away.translation())).norm(), 1e-2);
   // Of a cuboid's four ways to fit, the one 0.3 radians from here.
@@ -216,7 +216,7 @@ TEST(Align, PlanarParts) {
   const std::vector<char> bottom = faces_where(small, top), table = faces_where(large, top);
   Affine3d away = Affine3d::Identity();
   away.translation()[2] = 0.25;
-  const AlignResult r = align(moved(small, away), large, {}, bottom, table);
+  const align::AlignResult r = align(moved(small, away), large, {}, bottom, table);
   EXPECT_NEAR(r.rms_before, 0.25, 1e-9);
   EXPECT_LT(r.rms_after, 1e-6);
   EXPECT_NEAR(r.matrix(2, 2) * 0.25 + r.matrix(2, 3), 0, 1e-6);
@@ -229,7 +229,7 @@ TEST(Align, FewFaces) {
   one.faces = {{0, 1, 2}};
   Random random(11);
   const Affine3d away = anywhere(random, 2);
-  const AlignResult r = align(moved(one, away), one);
+  const align::AlignResult r = align(moved(one, away), one);
   EXPECT_LT(r.rms_after, 1e-4);
   EXPECT_LT(error(r, away, one), 0.01);
   EXPECT_TRUE(align(one, bust(1)).matrix.allFinite());
@@ -247,12 +247,12 @@ TEST(Align, DamagedFacesAreIgnored) {
 }
 
 TEST(Align, RefinesWhereTheModelsAre) {
-  AlignOptions here;
+  align::AlignOptions here;
   here.coarse = false;
   Affine3d away = Affine3d(Eigen::AngleAxisd(0.15, Vec3(1, 2, 3).normalized()));
   away.translation() = Vec3(0.05, 0.02, -0.04);
   const Mesh shape = bust(1);
-  const AlignResult r = align(moved(shape, away), shape, here);
+  const align::AlignResult r = align(moved(shape, away), shape, here);
   EXPECT_LT(error(r, away, shape), 1e-4);
   EXPECT_EQ(r.candidates, 1);
   here.max_iterations = 0;
@@ -260,12 +260,12 @@ TEST(Align, RefinesWhereTheModelsAre) {
 }
 
 TEST(Align, NeverWorseThanBefore) {
-  AlignOptions options;
+  align::AlignOptions options;
   for (bool coarse : {true, false}) {
     options.coarse = coarse;
-    const AlignResult r = align(man(32), animal(32), options);
+    const align::AlignResult r = align(man(32), animal(32), options);
     EXPECT_LE(r.rms_after, r.rms_before * 1.000001);
-    const AlignResult still = align(bust(1), bust(1), options);
+    const align::AlignResult still = align(bust(1), bust(1), options);
     EXPECT_TRUE(still.matrix.isIdentity(1e-6));
   }
 }
@@ -273,13 +273,13 @@ TEST(Align, NeverWorseThanBefore) {
 TEST(Align, TheNumberOfThreadsDoesNotMatter) {
   Random random(13);
   const Mesh shape = bust(1), other = moved(bust(2), anywhere(random, 2));
-  AlignOptions options;
+  align::AlignOptions options;
   options.allow_scale = options.allow_mirror = true;
   options.threads = 1;
-  const AlignResult one = align(other, shape, options);
+  const align::AlignResult one = align(other, shape, options);
   for (int threads : {2, 8}) {
     options.threads = threads;
-    const AlignResult r = align(other, shape, options);
+    const align::AlignResult r = align(other, shape, options);
     EXPECT_EQ(r.matrix, one.matrix) << threads;
     EXPECT_EQ(r.rms_after, one.rms_after) << threads;
     EXPECT_EQ(r.iterations, one.iterations) << threads;
@@ -295,13 +295,13 @@ TEST(Align, ProgressRisesAndCancels) {
     ++calls;
     return true;
   });
-  align_part_in_whole(man(32), {}, shape, {}, {}, watch);
+  align::align_part_in_whole(man(32), {}, shape, {}, {}, watch);
   EXPECT_EQ(last, 100);
   ASSERT_GT(calls, 5);
   for (int stop = 1; stop <= 8; ++stop) {
     int left = stop;
     Progress cancel([&](int, const char*) { return --left > 0; });
-    EXPECT_THROW(align_part_in_whole(man(32), {}, shape, {}, {}, cancel), Cancelled) << stop;
+    EXPECT_THROW(align::align_part_in_whole(man(32), {}, shape, {}, {}, cancel), Cancelled) << stop;
   }
 }
 
@@ -334,7 +334,7 @@ TEST(Align, SaysWhatIsWrong) {
     }
     EXPECT_TRUE(align(broken, good, {}, part).matrix.allFinite());
   }
-  AlignOptions options;
+  align::AlignOptions options;
   for (double overlap : {0.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
     options.overlap = overlap;
     EXPECT_THROW(align(good, good, options), UserError) << overlap;

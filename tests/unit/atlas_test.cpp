@@ -22,9 +22,9 @@ double uv_area(const Wedges& w) {
 
 /// Every face has its own place in the texture, the right way round, at about one scale.
 void expect_unfolded(const Mesh& m, int size) {
-  const Atlas atlas = make_atlas(m, size);
+  const render::Atlas atlas = render::make_atlas(m, size);
   ASSERT_EQ(atlas.wedges.size(), m.faces.size());
-  const TexelMap map = map_texels(atlas.wedges, size);
+  const render::TexelMap map = render::map_texels(atlas.wedges, size);
   EXPECT_EQ(map.conflicts, 0);
   for (int f = 0; f < m.face_count(); ++f) {
     const Wedges& w = atlas.wedges[f];
@@ -64,7 +64,7 @@ TEST(Atlas, UnfoldsARolledSheetThatCoversItself) {
 }
 
 TEST(Atlas, FewChartsOnARoughSurface) {
-  EXPECT_LE(make_atlas(noisy_sphere(Vec3::Zero(), 1, 5, 0.05, 1), 1024).charts, 40);
+  EXPECT_LE(render::make_atlas(noisy_sphere(Vec3::Zero(), 1, 5, 0.05, 1), 1024).charts, 40);
 }
 
 TEST(Atlas, CornersOfTheirOwnAndDoubledFacesMakeNoCharts) {
@@ -74,16 +74,16 @@ TEST(Atlas, CornersOfTheirOwnAndDoubledFacesMakeNoCharts) {
     for (int k = 0; k < 3; ++k) soup.vertices.push_back(whole.corner(f, k));
     soup.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
   }
-  EXPECT_EQ(make_atlas(soup, 256).charts, make_atlas(whole, 256).charts);
+  EXPECT_EQ(render::make_atlas(soup, 256).charts, render::make_atlas(whole, 256).charts);
   doubled.faces.insert(doubled.faces.end(), whole.faces.begin(), whole.faces.end());
-  EXPECT_LE(make_atlas(doubled, 256).charts, 3 * make_atlas(whole, 256).charts);
+  EXPECT_LE(render::make_atlas(doubled, 256).charts, 3 * render::make_atlas(whole, 256).charts);
   expect_unfolded(doubled, 256);
 }
 
 TEST(Atlas, FacesWithoutAreaHaveNoPlace) {
   Mesh m = sphere();
   m.faces.push_back({0, 0, 1});
-  const Atlas atlas = make_atlas(m, 128);
+  const render::Atlas atlas = render::make_atlas(m, 128);
   EXPECT_EQ(atlas.wedges.back().texture, -1);
   EXPECT_EQ(atlas.wedges.front().texture, 0);
 }
@@ -95,14 +95,14 @@ TEST(Atlas, SaysWhenThereIsNoRoom) {
       soup.vertices.push_back(p + Vec3(2. * (i % 20), 2. * (i / 20), 0));
     soup.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  EXPECT_THROW(make_atlas(soup, 64), UserError);
-  EXPECT_EQ(make_atlas(soup, 512).charts, 400);
+  EXPECT_THROW(render::make_atlas(soup, 64), UserError);
+  EXPECT_EQ(render::make_atlas(soup, 512).charts, 400);
 }
 
 TEST(Atlas, TexelsKnowTheirPoints) {
   const Mesh m = sphere();
-  const Atlas atlas = make_atlas(m, 256);
-  const TexelMap map = map_texels(atlas.wedges, 256);
+  const render::Atlas atlas = render::make_atlas(m, 256);
+  const render::TexelMap map = render::map_texels(atlas.wedges, 256);
   long covered = 0;
   for (std::size_t at = 0; at < map.face.size(); ++at) {
     if (map.face[at] < 0) continue;
@@ -120,22 +120,22 @@ TEST(Atlas, TexelsKnowTheirPoints) {
 
 TEST(TextureCoordinates, AreUsedOnlyWhereTheyHoldAPicture) {
   Mesh m = sphere();
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "none");
-  const Atlas atlas = make_atlas(m, 256);
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "none");
+  const render::Atlas atlas = render::make_atlas(m, 256);
   m.wedges = atlas.wedges;
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "");
   m.wedges[3].texture = 1;
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "several textures");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "several textures");
   m.wedges[3].texture = -1;
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "not on all faces");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "not on all faces");
   m.wedges = atlas.wedges;
   m.wedges[3].uv[0].x() = 1.5;
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "beyond the texture");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "beyond the texture");
   m.wedges = atlas.wedges;
   for (std::size_t f = 0; f < m.wedges.size() / 2; ++f) m.wedges[f] = m.wedges[f + m.wedges.size() / 2];
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "overlapping");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "overlapping");
   for (Wedges& w : m.wedges) w.uv.fill({0.5f, 0.5f});
-  EXPECT_EQ(texture_coordinates_flaw(m, 256), "degenerate");
+  EXPECT_EQ(render::texture_coordinates_flaw(m, 256), "degenerate");
 }
 
 }  // namespace

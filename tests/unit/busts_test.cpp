@@ -19,8 +19,8 @@ TEST(Busts, AreClosedFacesInColour) {
   for (unsigned seed : {1u}) {
     const BustShape shape = random_bust(seed);
     const Mesh mesh = bust_mesh(shape, "a.png");
-    const MeshCheck c = check(mesh);
-    EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << to_string(c);
+    const mesh::MeshCheck c = mesh::check(mesh);
+    EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << mesh::to_string(c);
     EXPECT_EQ(c.components, 1);
     EXPECT_EQ(c.euler, 2);
     EXPECT_GE(c.faces, 8000);
@@ -53,7 +53,7 @@ TEST(Busts, AreDamagedWhereTheyShould) {
   const BustShape shape = random_bust(3);
   const Mesh mesh = bust_mesh(shape, "", 32);
   const BustLandmarks at = bust_landmarks(shape);
-  const MeshCheck hole = check(without_ball(mesh, at.nose_tip, 0.16));
+  const mesh::MeshCheck hole = mesh::check(without_ball(mesh, at.nose_tip, 0.16));
   EXPECT_EQ(hole.boundary_loops, 1);
   EXPECT_TRUE(hole.manifold());
   std::vector<char> faces;

@@ -8,8 +8,8 @@ namespace parts::test {
 namespace {
 
 /// Clips by a plane: kept where (p - point) . normal > 0.
-ClipField plane(const Vec3& point, const Vec3& normal, double max_edge = 1e9) {
-  ClipField field;
+seam::ClipField plane(const Vec3& point, const Vec3& normal, double max_edge = 1e9) {
+  seam::ClipField field;
   field.value = [=](const Vec3& p) { return (p - point).dot(normal); };
   field.crosses = [=](const Mesh& m, int f) {
     double low = 1e300, high = -1e300;
@@ -38,10 +38,10 @@ TEST(Clip, TheTwoSidesOfAPlaneMakeTheWhole) {
     const Mesh mesh = n % 2 ? torus() : noisy_sphere(Vec3::Zero(), 1, 3, 0.4, unsigned(n));
     const Vec3 normal = random.direction(), point = 0.3 * random.direction();
     const double max_edge = n % 3 ? 1e9 : 0.05;
-    const Clipped above = clip(mesh, free_faces(mesh), plane(point, normal, max_edge), 1),
-                  below = clip(mesh, free_faces(mesh), plane(point, -normal, max_edge), 1);
+    const seam::Clipped above = seam::clip(mesh, free_faces(mesh), plane(point, normal, max_edge), 1),
+                        below = seam::clip(mesh, free_faces(mesh), plane(point, -normal, max_edge), 1);
     EXPECT_NEAR(area(above.mesh) + area(below.mesh), area(mesh), 0.02 * area(mesh));
-    for (const Clipped* c : {&above, &below}) {
+    for (const seam::Clipped* c : {&above, &below}) {
       const double side = c == &above ? 1 : -1;
       ASSERT_EQ(c->source_face.size(), c->mesh.faces.size());
       ASSERT_EQ(c->cut_vertex.size(), c->mesh.vertices.size());
@@ -62,31 +62,31 @@ TEST(Clip, TheTwoSidesOfAPlaneMakeTheWhole) {
 
 TEST(Clip, TheBorderIsTheBoundaryAndRunsWithTheFaces) {
   const Mesh mesh = torus();
-  const Clipped c = clip(mesh, free_faces(mesh), plane({0, 0.1, 0}, {0, 1, 0}), 1);
+  const seam::Clipped c = seam::clip(mesh, free_faces(mesh), plane({0, 0.1, 0}, {0, 1, 0}), 1);
   std::set<std::array<int, 2>> boundary;
-  for (const auto& e : boundary_half_edges(c.mesh)) boundary.insert(e);
+  for (const auto& e : mesh::boundary_half_edges(c.mesh)) boundary.insert(e);
   EXPECT_EQ(boundary, (std::set<std::array<int, 2>>(c.border.begin(), c.border.end())));
-  const std::vector<Loop> loops = trace_loops(c.border);
+  const std::vector<mesh::Loop> loops = mesh::trace_loops(c.border);
   ASSERT_EQ(loops.size(), 2u);
-  for (const Loop& l : loops) {
+  for (const mesh::Loop& l : loops) {
     EXPECT_TRUE(l.closed);
     for (int v : l.vertices) {
       EXPECT_TRUE(c.cut_vertex[v]);
       EXPECT_NEAR(c.mesh.vertices[v].y(), 0.1, 2e-3);
     }
   }
-  const MeshCheck check_ = check(c.mesh);
+  const mesh::MeshCheck check_ = mesh::check(c.mesh);
   EXPECT_TRUE(check_.manifold() && check_.oriented());
 }
 
 TEST(Clip, CrossedFacesAreSplitWithoutCracks) {
   const Mesh mesh = box({-1, -1, -1}, {1, 1, 1});  // twelve large faces
-  ClipField field = plane(Vec3::Zero(), {0, 0, 1}, 0.1);
+  seam::ClipField field = plane(Vec3::Zero(), {0, 0, 1}, 0.1);
   // A wavy zero set that the corners alone could not show.
   field.value = [](const Vec3& p) { return p.z() - 0.2 * std::sin(6 * p.x()) * std::cos(5 * p.y()); };
-  const Clipped c = clip(mesh, free_faces(mesh), field, 1);
-  const MeshCheck result = check(c.mesh);
-  EXPECT_TRUE(result.manifold() && result.oriented()) << to_string(result);
+  const seam::Clipped c = seam::clip(mesh, free_faces(mesh), field, 1);
+  const mesh::MeshCheck result = mesh::check(c.mesh);
+  EXPECT_TRUE(result.manifold() && result.oriented()) << mesh::to_string(result);
   EXPECT_EQ(result.boundary_loops, 1);
   for (const auto& e : c.border)
     for (int v : e) EXPECT_NEAR(field.value(c.mesh.vertices[v]), 0, 0.02);
@@ -99,14 +99,14 @@ TEST(Clip, PinnedFacesStayWholeOrGo) {
   const auto gone = faces_where(mesh, [](const Vec3& c) { return (c - Vec3(0, -1, 0)).norm() < 0.4; });
   for (int f = 0; f < mesh.face_count(); ++f) pinned[f] = kept[f] ? 1 : gone[f] ? -1 : 0;
   for (const double max_edge : {1e9, 0.02}) {
-    const Clipped c = clip(mesh, pinned, plane(Vec3::Zero(), {0, 0, 1}, max_edge), 1);
+    const seam::Clipped c = seam::clip(mesh, pinned, plane(Vec3::Zero(), {0, 0, 1}, max_edge), 1);
     const std::set<FaceKey> keys = face_keys(c.mesh);
     for (int f = 0; f < mesh.face_count(); ++f) {
       EXPECT_TRUE(!kept[f] || keys.count(face_key(mesh, f)));
       EXPECT_TRUE(!gone[f] || !keys.count(face_key(mesh, f)));
     }
-    const MeshCheck result = check(c.mesh);
-    EXPECT_TRUE(result.manifold() && result.oriented()) << to_string(result);
+    const mesh::MeshCheck result = mesh::check(c.mesh);
+    EXPECT_TRUE(result.manifold() && result.oriented()) << mesh::to_string(result);
     EXPECT_EQ(result.boundary_loops, 1);
   }
 }
@@ -121,7 +121,8 @@ TEST(Clip, AttributesAreLinearAlongCuts) {
     mesh.wedges[f].texture = 0;
     for (int k = 0; k < 3; ++k) mesh.wedges[f].uv[k] = mesh.corner(f, k).head<2>().cast<float>();
   }
-  const Clipped c = clip(mesh, free_faces(mesh), plane({0.05, 0, 0}, Vec3(1, 0.3, 0.2).normalized(), 0.03), 2);
+  const seam::Clipped c =
+      seam::clip(mesh, free_faces(mesh), plane({0.05, 0, 0}, Vec3(1, 0.3, 0.2).normalized(), 0.03), 2);
   for (int v = 0; v < c.mesh.vertex_count(); ++v)
     EXPECT_NEAR(c.mesh.vertex_quality[v], c.mesh.vertices[v].x() + 2 * c.mesh.vertices[v].y(), 1e-5);
   for (int f = 0; f < c.mesh.face_count(); ++f) {
@@ -133,13 +134,14 @@ TEST(Clip, AttributesAreLinearAlongCuts) {
 
 TEST(Clip, AllNothingAndTheSameForAnyNumberOfThreads) {
   const Mesh mesh = torus();
-  const Clipped all = clip(mesh, free_faces(mesh), plane({0, 0, -9}, {0, 0, 1}, 0.01), 1);
+  const seam::Clipped all = seam::clip(mesh, free_faces(mesh), plane({0, 0, -9}, {0, 0, 1}, 0.01), 1);
   EXPECT_EQ(all.mesh.vertices, mesh.vertices);
   EXPECT_EQ(all.mesh.faces, mesh.faces);
   EXPECT_TRUE(all.border.empty());
-  EXPECT_EQ(clip(mesh, free_faces(mesh), plane({0, 0, 9}, {0, 0, 1}), 1).mesh.face_count(), 0);
-  const ClipField field = plane({0.1, 0, 0}, {1, 0, 0}, 0.02);
-  const Clipped one = clip(mesh, free_faces(mesh), field, 1), eight = clip(mesh, free_faces(mesh), field, 8);
+  EXPECT_EQ(seam::clip(mesh, free_faces(mesh), plane({0, 0, 9}, {0, 0, 1}), 1).mesh.face_count(), 0);
+  const seam::ClipField field = plane({0.1, 0, 0}, {1, 0, 0}, 0.02);
+  const seam::Clipped one = seam::clip(mesh, free_faces(mesh), field, 1),
+                      eight = seam::clip(mesh, free_faces(mesh), field, 8);
   EXPECT_EQ(one.mesh.vertices, eight.mesh.vertices);
   EXPECT_EQ(one.mesh.faces, eight.mesh.faces);
   EXPECT_EQ(one.border, eight.border);

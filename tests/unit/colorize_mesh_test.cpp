@@ -43,17 +43,18 @@ class ColorizeMeshTest : public ::testing::Test {
     folder_ = fs::temp_directory_path() / ("colorize_mesh_test_" + std::to_string(::getpid()) + "_" +
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
-    options_.views = parse_views("0,0; 90,0; 180,0; -90,0; 0,80; 0,-80");
+    options_.views = render::parse_views("0,0; 90,0; 180,0; -90,0; 0,80; 0,-80");
     options_.rendering.width = 60, options_.rendering.height = 80;
     options_.rendering.ambient = 1, options_.rendering.back = false;
     options_.patch_sizes = {5, 7};
   }
   void TearDown() override { fs::remove_all(folder_); }
-  void model(const char* name, const Mesh& mesh) const { write_mesh(mesh, (folder_ / name).string()); }
-  MeshColors colored(const Mesh& mesh) {
+  void model(const char* name, const Mesh& mesh) const { io::write_mesh(mesh, (folder_ / name).string()); }
+  colorize::MeshColors colored(const Mesh& mesh) {
     Progress silent;
-    ClassModels models(ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
-    return colorize_mesh(mesh, models, options_, silent);
+    examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering,
+                                 silent);
+    return colorize::colorize_mesh(mesh, models, options_, silent);
   }
   static double mean_error(const Mesh& mesh, const std::vector<Color>& colors) {
     double sum = 0;
@@ -63,15 +64,15 @@ class ColorizeMeshTest : public ::testing::Test {
   }
 
   fs::path folder_;
-  ColorizeMeshOptions options_;
+  colorize::ColorizeMeshOptions options_;
 };
 
 TEST_F(ColorizeMeshTest, ColorsComeToTheirPlacesAllAround) {
   model("a.ply", painted(egg(0.3)));
   model("b.ply", painted(egg(0.5)));
   const Mesh query = egg(0.4);
-  const MeshColors colors = colored(query);
-  EXPECT_LT(mean_error(query, vertex_colors(colors)), 8);
+  const colorize::MeshColors colors = colored(query);
+  EXPECT_LT(mean_error(query, colorize::vertex_colors(colors)), 8);
   EXPECT_GT(colors.seen, 0.95);
   EXPECT_EQ(colors.used.size(), 2u);
   for (const auto& level : colors.objective)
@@ -83,16 +84,16 @@ TEST_F(ColorizeMeshTest, AnotherUnitPlaceAndStance) {
   Mesh query = egg(0.4);
   for (Vec3& v : query.vertices) v = 1000 * Vec3(v.x(), -v.z(), v.y()) + Vec3(5, 7, 9);  // lying on its back
   options_.up = {0, 0, 1}, options_.front = {0, -1, 0};
-  EXPECT_LT(mean_error(egg(0.4), vertex_colors(colored(query))), 8);
+  EXPECT_LT(mean_error(egg(0.4), colorize::vertex_colors(colored(query))), 8);
 }
 
 TEST_F(ColorizeMeshTest, HiddenPartsFollowTheModel) {
   model("a.ply", painted(together({egg(0.3), moved(egg(0), Eigen::Affine3d(Eigen::Scaling(0.5)))})));
   const Mesh inner = moved(egg(0), Eigen::Affine3d(Eigen::Scaling(0.55)));
   const Mesh query = together({egg(0.4), inner});
-  const MeshColors colors = colored(query);
+  const colorize::MeshColors colors = colored(query);
   EXPECT_LT(colors.seen, 0.85);
-  EXPECT_LT(mean_error(query, vertex_colors(colors)), 8);
+  EXPECT_LT(mean_error(query, colorize::vertex_colors(colors)), 8);
 }
 
 TEST_F(ColorizeMeshTest, KeptColorsStayAndTheOthersGoWithThem) {
@@ -105,8 +106,8 @@ TEST_F(ColorizeMeshTest, KeptColorsStayAndTheOthersGoWithThem) {
   }
   options_.keep = faces_where(query, [](const Vec3& center) { return center.z() > 0; });
   const std::vector<Color> truth = query.vertex_color;
-  const MeshColors colors = colored(query);
-  const std::vector<Color> found = vertex_colors(colors);
+  const colorize::MeshColors colors = colored(query);
+  const std::vector<Color> found = colorize::vertex_colors(colors);
   double front = 0, back = 0;
   int fronts = 0, backs = 0;
   for (int v = 0; v < query.vertex_count(); ++v) {
@@ -122,10 +123,10 @@ TEST_F(ColorizeMeshTest, KeptColorsStayAndTheOthersGoWithThem) {
 TEST_F(ColorizeMeshTest, TheTextureShowsTheSameAsTheVertices) {
   model("a.ply", painted(egg(0.3)));
   const Mesh query = egg(0.4);
-  const MeshColors colors = colored(query);
-  const Atlas atlas = make_atlas(query, 256);
-  const BakedTexture baked = bake_texture(query, atlas.wedges, 256, colors, 0);
-  const std::vector<Color> vertices = vertex_colors(colors);
+  const colorize::MeshColors colors = colored(query);
+  const render::Atlas atlas = render::make_atlas(query, 256);
+  const colorize::BakedTexture baked = colorize::bake_texture(query, atlas.wedges, 256, colors, 0);
+  const std::vector<Color> vertices = colorize::vertex_colors(colors);
   double sum = 0;
   for (int f = 0; f < query.face_count(); ++f) {
     const Eigen::Vector2f uv = (atlas.wedges[f].uv[0] + atlas.wedges[f].uv[1] + atlas.wedges[f].uv[2]) / 3;
@@ -144,20 +145,20 @@ TEST_F(ColorizeMeshTest, InsideOutAndAnyNumberOfThreads) {
   model("a.ply", painted(egg(0.3)));
   Mesh query = egg(0.4);
   options_.threads = 1;
-  const std::vector<Color> one = vertex_colors(colored(query));
+  const std::vector<Color> one = colorize::vertex_colors(colored(query));
   options_.threads = 5;
-  EXPECT_EQ(one, vertex_colors(colored(query)));
+  EXPECT_EQ(one, colorize::vertex_colors(colored(query)));
   for (Triangle& f : query.faces) std::swap(f[1], f[2]);
-  const MeshColors turned = colored(query);
+  const colorize::MeshColors turned = colored(query);
   EXPECT_FALSE(turned.oriented);
-  EXPECT_LT(mean_error(query, vertex_colors(turned)), 8);
+  EXPECT_LT(mean_error(query, colorize::vertex_colors(turned)), 8);
 }
 
 TEST_F(ColorizeMeshTest, LevelsWithoutSearchAddDetail) {
   model("a.ply", painted(egg(0.3)));
   options_.rendering.width = 240, options_.rendering.height = 320;  // searched at half of it
   const Mesh query = egg(0.4);
-  EXPECT_LT(mean_error(query, vertex_colors(colored(query))), 8);
+  EXPECT_LT(mean_error(query, colorize::vertex_colors(colored(query))), 8);
 }
 
 TEST_F(ColorizeMeshTest, WhatCannotBeColored) {
@@ -178,12 +179,12 @@ TEST_F(ColorizeMeshTest, WhatCannotBeColored) {
 
 TEST(ViewSheet, PixelsOfOnePointAgree) {
   const Mesh m = sphere(Vec3::Zero(), 1, 4);
-  ClassModel model{"m", m, {}, Vec3::Zero(), 2.4};
-  ExampleOptions rendering;
+  examples::ClassModel model{"m", m, {}, Vec3::Zero(), 2.4};
+  examples::ExampleOptions rendering;
   rendering.width = rendering.height = 64, rendering.back = false;
-  std::vector<Example> views;
-  for (double yaw : {0., 40.}) views.push_back(render_example(model, {yaw, 0}, 60, rendering));
-  const ViewSheet sheet(views, {{0, 0, 64, 64}, {0, 0, 64, 64}}, 2, 2, 1);
+  std::vector<examples::Example> views;
+  for (double yaw : {0., 40.}) views.push_back(examples::render_example(model, {yaw, 0}, 60, rendering));
+  const colorize::ViewSheet sheet(views, {{0, 0, 64, 64}, {0, 0, 64, 64}}, 2, 2, 1);
   cv::Mat plane(sheet.size(), CV_32F, cv::Scalar(0));
   plane(cv::Rect(sheet.tiles()[1].place, cv::Size(64, 64))).setTo(1);
   std::vector<cv::Mat> planes{plane};

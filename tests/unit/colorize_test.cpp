@@ -17,8 +17,8 @@ const float kNan = std::nanf("");
 
 /// A disc with a bump somewhere near its middle; the bump is red, the rest
 /// green. `tint` is added to all colours.
-Example disc(const std::string& name, cv::Point2d bump, double tint = 0) {
-  Example e;
+examples::Example disc(const std::string& name, cv::Point2d bump, double tint = 0) {
+  examples::Example e;
   e.object = name;
   e.camera.width = kSize.width, e.camera.height = kSize.height;
   e.image = cv::Mat(kSize, CV_8UC3, cv::Scalar(255, 255, 255));
@@ -36,19 +36,19 @@ Example disc(const std::string& name, cv::Point2d bump, double tint = 0) {
   return e;
 }
 
-class Discs : public ExampleSource {
+class Discs : public examples::ExampleSource {
  public:
-  explicit Discs(std::vector<Example> all) : all_(std::move(all)) {}
+  explicit Discs(std::vector<examples::Example> all) : all_(std::move(all)) {}
   int size() const override { return int(all_.size()); }
   const std::string& name(int object) const override { return all_[object].object; }
   cv::Size image_size() const override { return kSize; }
-  std::vector<View> views(int) const override { return {View{}}; }
-  Example get(int object, const View&) override { return all_[object]; }
-  const ClassPreset& preset() const override { return preset_; }
+  std::vector<render::View> views(int) const override { return {render::View{}}; }
+  examples::Example get(int object, const render::View&) override { return all_[object]; }
+  const io::ClassPreset& preset() const override { return preset_; }
 
  private:
-  std::vector<Example> all_;
-  ClassPreset preset_;
+  std::vector<examples::Example> all_;
+  io::ClassPreset preset_;
 };
 
 Discs some_discs() {
@@ -62,8 +62,8 @@ double mean_difference(const cv::Mat& a, const cv::Mat& b, const cv::Mat& mask) 
   return (m[0] + m[1] + m[2]) / 3;
 }
 
-ColorizeOptions quick() {
-  ColorizeOptions o;
+colorize::ColorizeOptions quick() {
+  colorize::ColorizeOptions o;
   o.patch_sizes = {7, 7};
   return o;
 }
@@ -71,8 +71,8 @@ ColorizeOptions quick() {
 TEST(ColorizeDepth, TheBumpIsRedWhereItIs) {
   Discs source = some_discs();
   Progress silent;
-  const Example query = disc("query", {-5, 5});
-  const ColorizeResult r = colorize_depth(query.depth, source, quick(), silent);
+  const examples::Example query = disc("query", {-5, 5});
+  const colorize::ColorizeResult r = colorize::colorize_depth(query.depth, source, quick(), silent);
   EXPECT_LT(mean_difference(r.color, query.image, query.mask), 12);
   EXPECT_FALSE(r.aligned);
   const cv::Vec3b bump = r.color.at<cv::Vec3b>(36 + 5, 36 - 5), rest = r.color.at<cv::Vec3b>(36 - 15, 36 + 15);
@@ -90,11 +90,11 @@ TEST(ColorizeDepth, TheBumpIsRedWhereItIs) {
 TEST(ColorizeDepth, UnitOffsetAndPlaceOfTheDepthDoNotMatter) {
   Discs source = some_discs();
   Progress silent;
-  const Example query = disc("query", {5, 5});
+  const examples::Example query = disc("query", {5, 5});
   cv::Mat moved(150, 160, CV_32F, cv::Scalar(kNan)), large;
   cv::resize(query.depth, large, {}, 1.5, 1.5, cv::INTER_NEAREST);
   cv::Mat(large * 0.01 + 3).copyTo(moved(cv::Rect(40, 10, large.cols, large.rows)));
-  const ColorizeResult r = colorize_depth(moved, source, quick(), silent);
+  const colorize::ColorizeResult r = colorize::colorize_depth(moved, source, quick(), silent);
   EXPECT_TRUE(r.aligned);
   const cv::Vec3b bump = r.color.at<cv::Vec3b>(10 + int(41 * 1.5), 40 + int(41 * 1.5));
   EXPECT_GT(bump[2], bump[1] + 50);
@@ -104,76 +104,77 @@ TEST(ColorizeDepth, UnitOffsetAndPlaceOfTheDepthDoNotMatter) {
 TEST(ColorizeDepth, ExamplesAreChosenByLikenessOrByName) {
   Discs source = some_discs();
   Progress silent;
-  ColorizeOptions o = quick();
+  colorize::ColorizeOptions o = quick();
   o.examples = 1;
-  EXPECT_EQ(colorize_depth(disc("q", {-7, 1}).depth, source, o, silent).used, std::vector<std::string>{"west"});
+  EXPECT_EQ(colorize::colorize_depth(disc("q", {-7, 1}).depth, source, o, silent).used,
+            std::vector<std::string>{"west"});
   o.choose = {"south", "north"};
-  const auto used = colorize_depth(disc("q", {0, -7}).depth, source, o, silent).used;
+  const auto used = colorize::colorize_depth(disc("q", {0, -7}).depth, source, o, silent).used;
   EXPECT_EQ(used, (std::vector<std::string>{"north", "south.obj"}));
   o.choose = {"nobody"};
-  EXPECT_THROW(colorize_depth(disc("q", {0, 0}).depth, source, o, silent), UserError);
+  EXPECT_THROW(colorize::colorize_depth(disc("q", {0, 0}).depth, source, o, silent), UserError);
 }
 
 TEST(ColorizeDepth, AnotherExposureIsHarmonizedAnotherBumpIsNot) {
   Progress silent;
-  ColorizeOptions o = quick();
+  colorize::ColorizeOptions o = quick();
   Discs tinted({disc("plain", {1, 1}), disc("bright", {-6, 0}, 50)});
-  const Example query = disc("q", {0, 1});
-  ColorizeResult r = colorize_depth(query.depth, tinted, o, silent);
+  const examples::Example query = disc("q", {0, 1});
+  colorize::ColorizeResult r = colorize::colorize_depth(query.depth, tinted, o, silent);
   EXPECT_EQ(r.harmonized, std::vector<std::string>{"bright"});
   EXPECT_LT(mean_difference(r.color, query.image, query.mask), 12);
   Discs same({disc("plain", {1, 1}), disc("other", {-6, 0})});
-  r = colorize_depth(query.depth, same, o, silent);
+  r = colorize::colorize_depth(query.depth, same, o, silent);
   EXPECT_TRUE(r.harmonized.empty());
 }
 
 TEST(ColorizeDepth, ADepthThatLiesElsewhereKeepsItsPixels) {
   Discs source = some_discs();
   Progress silent;
-  Example query = disc("q", {3, -4});
+  examples::Example query = disc("q", {3, -4});
   cv::Mat small, depth(kSize, CV_32F, cv::Scalar(kNan));
   cv::resize(query.depth, small, kSize / 2, 0, 0, cv::INTER_NEAREST);
   small.copyTo(depth(cv::Rect({4, 6}, small.size())));  // half as large, in a corner of an image of the same size
-  const ColorizeResult r = colorize_depth(depth, source, quick(), silent);
+  const colorize::ColorizeResult r = colorize::colorize_depth(depth, source, quick(), silent);
   EXPECT_TRUE(r.aligned);
   EXPECT_EQ(cv::countNonZero((depth == depth) != r.mask), 0);
   EXPECT_EQ(cv::countNonZero((r.example >= 0) != r.mask), 0);
 }
 
 TEST(ColorizeDepth, ExamplesThatDoNotGoTogetherAreLeftOut) {
-  Example other = disc("other", {2, 0});
+  examples::Example other = disc("other", {2, 0});
   cv::Mat half = other.mask.clone();
   half.colRange(0, kSize.width / 2).setTo(0);
   other.image.setTo(cv::Scalar(200, 20, 20), half);  // half of it is blue
   Discs source({disc("plain", {1, 1}), other, disc("far", {-6, 0})});
   Progress silent;
-  const Example query = disc("q", {1, 1});
-  const ColorizeResult r = colorize_depth(query.depth, source, quick(), silent);
+  const examples::Example query = disc("q", {1, 1});
+  const colorize::ColorizeResult r = colorize::colorize_depth(query.depth, source, quick(), silent);
   EXPECT_EQ(r.used, (std::vector<std::string>{"plain", "far"}));
   EXPECT_EQ(r.left_out, 0);
   Discs two({disc("plain", {1, 1}), other});
-  const ColorizeResult alone = colorize_depth(query.depth, two, quick(), silent);
+  const colorize::ColorizeResult alone = colorize::colorize_depth(query.depth, two, quick(), silent);
   EXPECT_EQ(alone.used, std::vector<std::string>{"plain"});
   EXPECT_EQ(alone.left_out, 1);
-  ColorizeOptions chosen = quick();
+  colorize::ColorizeOptions chosen = quick();
   chosen.choose = {"plain", "other"};
-  EXPECT_EQ(colorize_depth(query.depth, two, chosen, silent).used.size(), 2u);
+  EXPECT_EQ(colorize::colorize_depth(query.depth, two, chosen, silent).used.size(), 2u);
 }
 
 TEST(ColorizeDepth, SameForAnyNumberOfThreadsAndSeedsVary) {
   Discs source = some_discs();
   Progress silent;
-  ColorizeOptions o = quick();
-  const Example query = disc("q", {3, -4});
+  colorize::ColorizeOptions o = quick();
+  const examples::Example query = disc("q", {3, -4});
   o.threads = 1;
-  const ColorizeResult one = colorize_depth(query.depth, source, o, silent);
+  const colorize::ColorizeResult one = colorize::colorize_depth(query.depth, source, o, silent);
   o.threads = 8;
-  const ColorizeResult eight = colorize_depth(query.depth, source, o, silent);
+  const colorize::ColorizeResult eight = colorize::colorize_depth(query.depth, source, o, silent);
   EXPECT_EQ(cv::norm(one.color, eight.color, cv::NORM_INF), 0);
   std::set<std::string> firsts;
   for (unsigned seed = 0; seed < 6; ++seed) {
     o.seed = seed;
-    firsts.insert(colorize_depth(query.depth, source, o, silent).used[0]);
+    firsts.insert(colorize::colorize_depth(query.depth, source, o, silent).used[0]);
   }
   EXPECT_GT(firsts.size(), 1u);
 }
@@ -181,17 +182,17 @@ TEST(ColorizeDepth, SameForAnyNumberOfThreadsAndSeedsVary) {
 TEST(ColorizeDepth, NothingToColor) {
   Discs source = some_discs();
   Progress silent;
-  EXPECT_THROW(colorize_depth(cv::Mat(kSize, CV_32F, cv::Scalar(kNan)), source, quick(), silent), UserError);
-  ColorizeOptions none = quick();
+  EXPECT_THROW(colorize::colorize_depth(cv::Mat(kSize, CV_32F, cv::Scalar(kNan)), source, quick(), silent), UserError);
+  colorize::ColorizeOptions none = quick();
   none.examples = 0;
-  EXPECT_THROW(colorize_depth(disc("q", {0, 0}).depth, source, none, silent), UserError);
+  EXPECT_THROW(colorize::colorize_depth(disc("q", {0, 0}).depth, source, none, silent), UserError);
 }
 
 TEST(UsagePicture, AColorAnExample) {
   Discs source = some_discs();
   Progress silent;
-  const ColorizeResult r = colorize_depth(disc("q", {0, 0}).depth, source, quick(), silent);
-  const cv::Mat picture = usage_picture(r.example);
+  const colorize::ColorizeResult r = colorize::colorize_depth(disc("q", {0, 0}).depth, source, quick(), silent);
+  const cv::Mat picture = synthesis::usage_picture(r.example);
   EXPECT_EQ(picture.size(), r.mask.size());
   cv::Mat grey;
   cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);

@@ -19,13 +19,13 @@ void dress(Mesh& mesh, const Color& color, const std::string& texture) {
     mesh.wedges[f].texture = 0;
     for (int k = 0; k < 3; ++k) mesh.wedges[f].uv[k] = mesh.corner(f, k).head<2>().cast<float>();
   }
-  update_normals(mesh);
+  mesh::update_normals(mesh);
 }
 
 TEST(ComposeAttributes, TravelWithTheirFaces) {
   auto [a, b] = two_spheres(4);
   dress(a.mesh, kRed, "a.png"), dress(b.mesh, kBlue, "b.png");
-  const ComposeResult r = compose_quietly(a, b);
+  const compose::ComposeResult r = compose_quietly(a, b);
   const Mesh& m = r.composed;
   ASSERT_EQ(m.vertex_color.size(), m.vertices.size());
   ASSERT_EQ(m.vertex_quality.size(), m.vertices.size());
@@ -71,7 +71,7 @@ TEST(ComposeAttributes, WhatOneModelLacksIsNeutral) {
   for (const bool a_has : {true, false}) {
     auto [a, b] = two_spheres();
     dress(a_has ? a.mesh : b.mesh, kRed, "only.png");
-    const ComposeResult r = compose_quietly(a, b);
+    const compose::ComposeResult r = compose_quietly(a, b);
     const Mesh& m = r.composed;
     ASSERT_EQ(m.wedges.size(), m.faces.size());
     ASSERT_EQ(m.face_color.size(), m.faces.size());
@@ -103,13 +103,13 @@ TEST(ComposeAttributes, TheSameTextureFileIsListedOnce) {
 
 TEST(ComposeAttributes, NormalsFollowAModelThatIsTurnedOver) {
   auto [a, b] = two_spheres(4);
-  update_normals(a.mesh);
-  update_normals(b.mesh);
-  flip_orientation(b.mesh);
-  const ComposeResult r = compose_quietly(a, b);
+  mesh::update_normals(a.mesh);
+  mesh::update_normals(b.mesh);
+  mesh::flip_orientation(b.mesh);
+  const compose::ComposeResult r = compose_quietly(a, b);
   EXPECT_TRUE(r.report.reversed_b);
   Mesh fresh = r.composed;
-  update_normals(fresh);
+  mesh::update_normals(fresh);
   for (int v = 0; v < fresh.vertex_count(); ++v)
     EXPECT_GT(fresh.vertex_normal[v].dot(r.composed.vertex_normal[v]), 0.5f);
 }

@@ -9,16 +9,16 @@ struct Tally {
   int scenes = 0, clean = 0, refused = 0;
 };
 
-void compose_random_scenes(Cut cut, unsigned from, unsigned to, Tally& tally) {
+void compose_random_scenes(cut::Cut cut, unsigned from, unsigned to, Tally& tally) {
   for (unsigned seed = from; seed < to; ++seed) {
     const std::string what = "random_scene(" + std::to_string(seed) + ")";
     const Scene scene = random_scene(seed);
-    const Part a{scene.a, scene.keep_a}, b{scene.b, scene.keep_b};
-    ComposeOptions options;
+    const cut::Part a{scene.a, scene.keep_a}, b{scene.b, scene.keep_b};
+    compose::ComposeOptions options;
     options.cut = cut;
     options.resolution = seed % 3 == 0 ? 30 + int(seed % 40) : 0;
     ++tally.scenes;
-    ComposeResult r;
+    compose::ComposeResult r;
     try {
       r = compose_quietly(a, b, options);
     } catch (const UserError&) {
@@ -33,16 +33,16 @@ void compose_random_scenes(Cut cut, unsigned from, unsigned to, Tally& tally) {
     const double near = 8 * r.report.voxel_size + 2 * std::max(longest_edge(a.mesh), longest_edge(b.mesh));
     EXPECT_EQ(changed_far_faces(r, a.mesh, b.mesh, near), 0) << what;
     // Every component that the cut makes ends at a contour, joined or capped.
-    EXPECT_LE(check(r.composed).components, 2 + r.report.loops_a + r.report.loops_b) << what;
+    EXPECT_LE(mesh::check(r.composed).components, 2 + r.report.loops_a + r.report.loops_b) << what;
     EXPECT_GE(r.report.seconds, r.report.cut_seconds) << what;
-    const long had = self_intersections(a.mesh) + self_intersections(b.mesh);
-    tally.clean += self_intersections(r.composed, had + 1) <= had;
+    const long had = mesh::self_intersections(a.mesh) + mesh::self_intersections(b.mesh);
+    tally.clean += mesh::self_intersections(r.composed, had + 1) <= had;
   }
 }
 
 TEST(ComposeRandom, RefinedKeepsItsPromises) {
   Tally tally;
-  compose_random_scenes(Cut::Refined, 0, 70, tally);
+  compose_random_scenes(cut::Cut::Refined, 0, 70, tally);
   RecordProperty("without_new_self_intersections", tally.clean);
   EXPECT_LE(tally.refused, 2);
   // Scenes are turned at random; the cut cannot join all of them without a fold.
@@ -51,7 +51,7 @@ TEST(ComposeRandom, RefinedKeepsItsPromises) {
 
 TEST(ComposeRandom, ThesisKeepsItsPromises) {
   Tally tally;
-  compose_random_scenes(Cut::Thesis, 0, 30, tally);
+  compose_random_scenes(cut::Cut::Thesis, 0, 30, tally);
   RecordProperty("without_new_self_intersections", tally.clean);
   EXPECT_LE(tally.refused, 2);
   EXPECT_GE(tally.clean, (tally.scenes - tally.refused) * 40 / 100);
@@ -60,10 +60,10 @@ TEST(ComposeRandom, ThesisKeepsItsPromises) {
 TEST(ComposeRandom, TheSameBytesForAnyNumberOfThreads) {
   for (unsigned seed = 200; seed < 206; ++seed) {
     const Scene scene = random_scene(seed);
-    ComposeOptions options;
-    options.cut = seed % 2 ? Cut::Thesis : Cut::Refined;
+    compose::ComposeOptions options;
+    options.cut = seed % 2 ? cut::Cut::Thesis : cut::Cut::Refined;
     options.transition_surface = true;
-    std::vector<ComposeResult> results;
+    std::vector<compose::ComposeResult> results;
     for (const int threads : {1, 2, 8}) {
       options.threads = threads;
       results.push_back(compose_quietly({scene.a, scene.keep_a}, {scene.b, scene.keep_b}, options));

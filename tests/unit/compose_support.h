@@ -39,9 +39,10 @@ inline double volume_of(const Mesh& mesh) {
   return sum / 6;
 }
 
-inline ComposeResult compose_quietly(const Part& a, const Part& b, const ComposeOptions& options = {}) {
+inline compose::ComposeResult compose_quietly(const cut::Part& a, const cut::Part& b,
+                                              const compose::ComposeOptions& options = {}) {
   Progress silent;
-  return compose(a, b, options, silent);
+  return compose::compose(a, b, options, silent);
 }
 
 /// The sentence of the UserError that a call throws; empty if it throws none.
@@ -56,14 +57,14 @@ std::string user_error(const Call& call) {
 }
 
 inline void expect_closed_manifold(const Mesh& mesh, const std::string& what) {
-  const MeshCheck c = check(mesh);
-  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << what << "\n" << to_string(c);
+  const mesh::MeshCheck c = mesh::check(mesh);
+  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << what << "\n" << mesh::to_string(c);
   EXPECT_EQ(c.nonfinite_vertices + c.unused_vertices, 0) << what;
   EXPECT_GT(c.faces, 0) << what;
 }
 
 /// Faces that must survive and are not in the result.
-inline int missing_faces(const ComposeResult& r, const Part& a, const Part& b) {
+inline int missing_faces(const compose::ComposeResult& r, const cut::Part& a, const cut::Part& b) {
   const std::set<FaceKey> result = face_keys(r.composed);
   int missing = 0;
   for (int f = 0; f < a.mesh.face_count(); ++f) missing += a.keep[f] && !result.count(face_key(a.mesh, f));
@@ -81,10 +82,10 @@ inline double longest_edge(const Mesh& mesh) {
 
 /// Faces that are of no input, bit for bit, and whose every corner is farther
 /// than `distance` from the clipped models' borders.
-inline int changed_far_faces(const ComposeResult& r, const Mesh& a, const Mesh& b, double distance) {
+inline int changed_far_faces(const compose::ComposeResult& r, const Mesh& a, const Mesh& b, double distance) {
   std::vector<Vec3> seam;
   for (const Mesh* clipped : {&r.clipped_a, &r.clipped_b})
-    for (const auto& loop : boundary_loops(*clipped, edge_map(*clipped)))
+    for (const auto& loop : mesh::boundary_loops(*clipped, mesh::edge_map(*clipped)))
       for (int v : loop) seam.push_back(clipped->vertices[v]);
   const std::set<FaceKey> of_a = face_keys(a), of_b = face_keys(b, r.report.reversed_b);
   int changed = 0;
@@ -100,8 +101,8 @@ inline int changed_far_faces(const ComposeResult& r, const Mesh& a, const Mesh& 
 }
 
 /// Two spheres of radius 1 around (0, 0, 0) and (1, 0, 0), their far ends kept.
-inline std::array<Part, 2> two_spheres(int subdivisions = 3) {
-  Part a{sphere({0, 0, 0}, 1, subdivisions), {}}, b{sphere({1, 0, 0}, 1, subdivisions), {}};
+inline std::array<cut::Part, 2> two_spheres(int subdivisions = 3) {
+  cut::Part a{sphere({0, 0, 0}, 1, subdivisions), {}}, b{sphere({1, 0, 0}, 1, subdivisions), {}};
   a.keep = faces_where(a.mesh, [](const Vec3& c) { return c.x() < -0.7; });
   b.keep = faces_where(b.mesh, [](const Vec3& c) { return c.x() > 1.7; });
   return {a, b};

@@ -7,16 +7,17 @@ namespace parts::test {
 namespace {
 
 std::vector<char> by_box(const Mesh& mesh, const Vec3& min, const Vec3& max) {
-  return constrained_faces(mesh, ConstraintBy::Box, min, max, "model A");
+  return compose::constrained_faces(mesh, compose::ConstraintBy::Box, min, max, "model A");
 }
 
 TEST(Constraint, SelectedFacesAndVertices) {
   Mesh mesh = sphere();
   mesh.face_selected = faces_where(mesh, [](const Vec3& c) { return c.z() > 0.5; });
-  EXPECT_EQ(constrained_faces(mesh, ConstraintBy::SelectedFaces, {}, {}, "A"), mesh.face_selected);
+  EXPECT_EQ(compose::constrained_faces(mesh, compose::ConstraintBy::SelectedFaces, {}, {}, "A"), mesh.face_selected);
   mesh.vertex_selected.assign(mesh.vertices.size(), 0);
   mesh.vertex_selected[5] = 1;
-  const std::vector<char> around = constrained_faces(mesh, ConstraintBy::SelectedVertices, {}, {}, "A");
+  const std::vector<char> around =
+      compose::constrained_faces(mesh, compose::ConstraintBy::SelectedVertices, {}, {}, "A");
   for (int f = 0; f < mesh.face_count(); ++f) {
     const Triangle& t = mesh.faces[f];
     EXPECT_EQ(around[f] != 0, t[0] == 5 || t[1] == 5 || t[2] == 5);
@@ -73,17 +74,17 @@ TEST(Constraint, EverySentenceNamesTheModel) {
   const Mesh mesh = sphere();
   const double nan = std::nan("");
   const std::vector<std::string> sentences{
-      user_error([&] { constrained_faces(mesh, ConstraintBy::SelectedFaces, {}, {}, "the hat"); }),
-      user_error([&] { constrained_faces(mesh, ConstraintBy::SelectedVertices, {}, {}, "the hat"); }),
-      user_error([&] { constrained_faces(Mesh(), ConstraintBy::SelectedFaces, {}, {}, "the hat"); }),
+      user_error([&] { compose::constrained_faces(mesh, compose::ConstraintBy::SelectedFaces, {}, {}, "the hat"); }),
+      user_error([&] { compose::constrained_faces(mesh, compose::ConstraintBy::SelectedVertices, {}, {}, "the hat"); }),
+      user_error([&] { compose::constrained_faces(Mesh(), compose::ConstraintBy::SelectedFaces, {}, {}, "the hat"); }),
       user_error([&] {
-        constrained_faces(mesh, ConstraintBy::Box, {3, 3, 3}, {4, 4, 4}, "the hat");
+        compose::constrained_faces(mesh, compose::ConstraintBy::Box, {3, 3, 3}, {4, 4, 4}, "the hat");
       }),
       user_error([&] {
-        constrained_faces(mesh, ConstraintBy::Box, {0, 0, 1}, {1, 1, 0}, "the hat");
+        compose::constrained_faces(mesh, compose::ConstraintBy::Box, {0, 0, 1}, {1, 1, 0}, "the hat");
       }),
       user_error([&] {
-        constrained_faces(mesh, ConstraintBy::Box, {nan, 0, 0}, {1, 1, 1}, "the hat");
+        compose::constrained_faces(mesh, compose::ConstraintBy::Box, {nan, 0, 0}, {1, 1, 1}, "the hat");
       }),
   };
   std::set<std::string> different;

@@ -22,21 +22,21 @@ Arm arm() {
   return a;
 }
 
-std::vector<ComposeResult> bend(const Arm& a, const RigidPose& pose, int frames = 1) {
+std::vector<compose::ComposeResult> bend(const Arm& a, const compose::RigidPose& pose, int frames = 1) {
   Progress silent;
-  return deform(a.mesh, a.fixed, a.moving, pose, frames, {}, silent);
+  return compose::deform(a.mesh, a.fixed, a.moving, pose, frames, {}, silent);
 }
 
 TEST(Deform, BendsAnArm) {
   const Arm a = arm();
-  RigidPose pose;
+  compose::RigidPose pose;
   pose.angle = 60;
-  const std::vector<ComposeResult> results = bend(a, pose);
+  const std::vector<compose::ComposeResult> results = bend(a, pose);
   ASSERT_EQ(results.size(), 1u);
   const Mesh& m = results[0].composed;
   expect_closed_manifold(m, "bent arm");
-  EXPECT_EQ(check(m).components, 1);
-  EXPECT_EQ(check(m).euler, 2);
+  EXPECT_EQ(mesh::check(m).components, 1);
+  EXPECT_EQ(mesh::check(m).euler, 2);
   // The hand is where the rotation takes it, and the shoulder has not moved.
   double hand = 1e9;
   for (const Vec3& v : m.vertices) hand = std::min(hand, (v - Vec3(1.2, 1.2 * std::sqrt(3.), 0)).norm());
@@ -48,16 +48,16 @@ TEST(Deform, BendsAnArm) {
 
 TEST(Deform, FramesLeadFromRestToThePose) {
   const Arm a = arm();
-  RigidPose pose;
+  compose::RigidPose pose;
   pose.angle = 40;
-  const std::vector<ComposeResult> frames = bend(a, pose, 4);
+  const std::vector<compose::ComposeResult> frames = bend(a, pose, 4);
   ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(frames[0].composed.vertices, a.mesh.vertices);
   EXPECT_EQ(frames[0].composed.faces, a.mesh.faces);
   const Mesh last = bend(a, pose)[0].composed;
   EXPECT_EQ(frames[3].composed.vertices, last.vertices);
   double before = -1;
-  for (const ComposeResult& frame : frames) {
+  for (const compose::ComposeResult& frame : frames) {
     expect_closed_manifold(frame.composed, "frame");
     const double height = frame.composed.bounds().max().y();
     EXPECT_GT(height, before);
@@ -67,17 +67,17 @@ TEST(Deform, FramesLeadFromRestToThePose) {
 
 TEST(Deform, TranslatesScalesAndMirrors) {
   const Arm a = arm();
-  RigidPose pull;
+  compose::RigidPose pull;
   pull.translation = {0.8, 0, 0};
   EXPECT_NEAR(bend(a, pull)[0].composed.bounds().max().x(), a.mesh.bounds().max().x() + 0.8, 1e-9);
-  RigidPose grow;
+  compose::RigidPose grow;
   grow.scale = 1.3;
   const Mesh grown = bend(a, grow)[0].composed;
   expect_closed_manifold(grown, "scaled");
   EXPECT_NEAR(grown.bounds().max().x(), 1.3 * a.mesh.bounds().max().x(), 1e-9);
-  RigidPose mirror;
+  compose::RigidPose mirror;
   mirror.mirror = true;
-  const ComposeResult mirrored = bend(a, mirror)[0];
+  const compose::ComposeResult mirrored = bend(a, mirror)[0];
   expect_closed_manifold(mirrored.composed, "mirrored");
   EXPECT_FALSE(mirrored.report.reversed_b);
   EXPECT_GT(volume_of(mirrored.composed), 0);
@@ -92,8 +92,8 @@ TEST(Deform, TheZeroPoseGivesTheModelBack) {
 
 TEST(Deform, PosesThatAreNone) {
   const Arm a = arm();
-  const auto sentence = [&](const std::function<void(RigidPose&)>& set, int frames = 1) {
-    RigidPose pose;
+  const auto sentence = [&](const std::function<void(compose::RigidPose&)>& set, int frames = 1) {
+    compose::RigidPose pose;
     set(pose);
     return user_error([&] { bend(a, pose, frames); });
   };
@@ -110,18 +110,18 @@ TEST(Deform, PosesThatAreNone) {
 
 TEST(Deform, CancelsBetweenFrames) {
   const Arm a = arm();
-  RigidPose pose;
+  compose::RigidPose pose;
   pose.angle = 30;
   int calls = 0;
   Progress progress([&](int, const char*) { return ++calls < 25; });
-  EXPECT_THROW(deform(a.mesh, a.fixed, a.moving, pose, 6, {}, progress), Cancelled);
+  EXPECT_THROW(compose::deform(a.mesh, a.fixed, a.moving, pose, 6, {}, progress), Cancelled);
   int last = 0;
   Progress forward([&](int percent, const char*) {
     EXPECT_LE(percent, 100);
     last = percent;
     return true;
   });
-  deform(a.mesh, a.fixed, a.moving, pose, 3, {}, forward);
+  compose::deform(a.mesh, a.fixed, a.moving, pose, 3, {}, forward);
   EXPECT_EQ(last, 100);
 }
 

@@ -30,9 +30,9 @@ void disc(cv::Mat& depth, double x, double y, double r, float z) {
       if (std::hypot(u - x, v - y) < r) depth.at<float>(v, u) = z;
 }
 
-DepthMesh mesh_of(const cv::Mat& depth, const cv::Mat& back = {}, double max_jump = 0, double focal = 0) {
+render::DepthMesh mesh_of(const cv::Mat& depth, const cv::Mat& back = {}, double max_jump = 0, double focal = 0) {
   Progress progress;
-  return depth_to_mesh(depth, back, raster_camera(depth.size(), 1, focal), {max_jump}, progress);
+  return render::depth_to_mesh(depth, back, render::raster_camera(depth.size(), 1, focal), {max_jump}, progress);
 }
 
 double volume(const Mesh& m) {
@@ -56,17 +56,17 @@ Mesh welded(const Mesh& m) {
 }
 
 void expect_closed(const Mesh& m) {
-  const MeshCheck c = check(m);
-  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << to_string(c);
+  const mesh::MeshCheck c = mesh::check(m);
+  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << mesh::to_string(c);
   EXPECT_EQ(c.degenerate_faces, 0);
   EXPECT_EQ(c.unused_vertices, 0);
-  const MeshCheck w = check(welded(m));
-  EXPECT_TRUE(w.closed() && w.manifold() && w.oriented()) << "welded\n" << to_string(w);
+  const mesh::MeshCheck w = mesh::check(welded(m));
+  EXPECT_TRUE(w.closed() && w.manifold() && w.oriented()) << "welded\n" << mesh::to_string(w);
   EXPECT_GT(volume(m), 0);
 }
 
 TEST(DepthMesh, APlaneFacesTheCamera) {
-  const DepthMesh out = mesh_of(cv::Mat(4, 6, CV_32F, cv::Scalar(10)));
+  const render::DepthMesh out = mesh_of(cv::Mat(4, 6, CV_32F, cv::Scalar(10)));
   const Mesh& m = out.mesh;
   EXPECT_EQ(m.vertex_count(), 24);
   EXPECT_EQ(m.face_count(), 2 * 5 * 3);
@@ -83,7 +83,7 @@ TEST(DepthMesh, APlaneFacesTheCamera) {
 }
 
 TEST(DepthMesh, PinholeRaysSpread) {
-  const DepthMesh out = mesh_of(cv::Mat(40, 60, CV_32F, cv::Scalar(10)), {}, 0, 50);
+  const render::DepthMesh out = mesh_of(cv::Mat(40, 60, CV_32F, cv::Scalar(10)), {}, 0, 50);
   EXPECT_NEAR(out.mesh.bounds().max().x(), 29.5 * 10 / 50, 1e-9);
   EXPECT_NEAR(out.mesh.bounds().max().y(), 19.5 * 10 / 50, 1e-9);
   EXPECT_NEAR(out.mesh.bounds().max().z(), -10, 1e-9);
@@ -92,15 +92,15 @@ TEST(DepthMesh, PinholeRaysSpread) {
 TEST(DepthMesh, SeenThroughItsCameraItIsTheRaster) {
   const Mesh model = bust(3, 40);
   for (const bool pinhole : {false, true}) {
-    const Eigen::Matrix3d rotation = view_rotation({30, 10}, {0, 1, 0}, {0, 0, 1});
-    const Camera camera = pinhole ? pinhole_camera(rotation, model.bounds(), 90, 120, 150)
-                                  : orthographic_camera(rotation, model.bounds(), 90, 120);
-    const Rendering seen = render(model, {}, camera, {});
+    const Eigen::Matrix3d rotation = render::view_rotation({30, 10}, {0, 1, 0}, {0, 0, 1});
+    const render::Camera camera = pinhole ? pinhole_camera(rotation, model.bounds(), 90, 120, 150)
+                                          : render::orthographic_camera(rotation, model.bounds(), 90, 120);
+    const render::Rendering seen = render::render(model, {}, camera, {});
     Progress progress;
-    const DepthMesh out = depth_to_mesh(seen.depth, {}, camera, {}, progress);
-    const MeshCheck c = check(out.mesh);
-    EXPECT_TRUE(c.manifold() && c.oriented()) << to_string(c);
-    const Rendering again = render(out.mesh, {}, camera, {});
+    const render::DepthMesh out = render::depth_to_mesh(seen.depth, {}, camera, {}, progress);
+    const mesh::MeshCheck c = mesh::check(out.mesh);
+    EXPECT_TRUE(c.manifold() && c.oriented()) << mesh::to_string(c);
+    const render::Rendering again = render::render(out.mesh, {}, camera, {});
     int lost = 0;
     cv::Mat inside;
     cv::erode(seen.mask, inside, cv::Mat());
@@ -126,10 +126,10 @@ TEST(DepthMesh, TornWhereDepthJumps) {
   cv::Mat depth = background(60, 40);
   disc(depth, 30, 20, 18, 50);
   disc(depth, 38, 20, 9, 30);
-  const DepthMesh torn = mesh_of(depth), asked = mesh_of(depth, {}, 5), whole = mesh_of(depth, {}, 25);
-  EXPECT_EQ(check(torn.mesh).components, 2);
-  EXPECT_EQ(check(asked.mesh).components, 2);
-  EXPECT_EQ(check(whole.mesh).components, 1);
+  const render::DepthMesh torn = mesh_of(depth), asked = mesh_of(depth, {}, 5), whole = mesh_of(depth, {}, 25);
+  EXPECT_EQ(mesh::check(torn.mesh).components, 2);
+  EXPECT_EQ(mesh::check(asked.mesh).components, 2);
+  EXPECT_EQ(mesh::check(whole.mesh).components, 1);
   EXPECT_EQ(torn.max_jump, 6) << "six pixels, as the range is small";
   EXPECT_EQ(whole.max_jump, 25);
   for (int f = 0; f < torn.mesh.face_count(); ++f) EXPECT_EQ(torn.mesh.corner(f, 0).z(), torn.mesh.corner(f, 1).z());
@@ -140,9 +140,9 @@ TEST(DepthMesh, PixelsBetweenTwoSurfacesAreNoSurface) {
   disc(depth, 40, 30, 26, 80);
   disc(depth, 45, 33, 14.4, 50);
   disc(depth, 45, 33, 13, 20);
-  const DepthMesh out = mesh_of(depth);
+  const render::DepthMesh out = mesh_of(depth);
   EXPECT_GT(out.dropped_faces, 0);
-  EXPECT_EQ(check(out.mesh).components, 2);
+  EXPECT_EQ(mesh::check(out.mesh).components, 2);
   for (int f = 0; f < out.mesh.face_count(); ++f)
     for (int k = 0; k < 3; ++k) {
       const double z = -out.mesh.corner(f, k).z();
@@ -161,9 +161,9 @@ TEST(DepthMesh, FansThatMeetInAPixelAreApart) {
   depth(cv::Rect(0, 0, 5, 5)).setTo(7);
   depth(cv::Rect(4, 4, 5, 5)).setTo(13);
   depth.at<float>(4, 4) = 10;
-  const DepthMesh out = mesh_of(depth, {}, 4);
-  const MeshCheck c = check(out.mesh);
-  EXPECT_TRUE(c.manifold()) << to_string(c);
+  const render::DepthMesh out = mesh_of(depth, {}, 4);
+  const mesh::MeshCheck c = mesh::check(out.mesh);
+  EXPECT_TRUE(c.manifold()) << mesh::to_string(c);
   EXPECT_EQ(c.vertices, 50);
   EXPECT_EQ(c.components, 2);
 }
@@ -171,13 +171,14 @@ TEST(DepthMesh, FansThatMeetInAPixelAreApart) {
 TEST(DepthSolid, ASphereIsClosed) {
   const Mesh model = sphere({0, 0, 0}, 1, 5);
   for (const double focal : {0., 200.}) {
-    const Camera camera = focal > 0 ? pinhole_camera(Eigen::Matrix3d::Identity(), model.bounds(), 100, 100, focal)
-                                    : orthographic_camera(Eigen::Matrix3d::Identity(), model.bounds(), 100, 100);
-    const Rendering seen = render(model, {}, camera, {});
+    const render::Camera camera =
+        focal > 0 ? pinhole_camera(Eigen::Matrix3d::Identity(), model.bounds(), 100, 100, focal)
+                  : render::orthographic_camera(Eigen::Matrix3d::Identity(), model.bounds(), 100, 100);
+    const render::Rendering seen = render::render(model, {}, camera, {});
     Progress progress;
-    const DepthMesh out = depth_to_mesh(seen.depth, seen.back_depth, camera, {}, progress);
+    const render::DepthMesh out = render::depth_to_mesh(seen.depth, seen.back_depth, camera, {}, progress);
     expect_closed(out.mesh);
-    EXPECT_EQ(check(out.mesh).components, 1);
+    EXPECT_EQ(mesh::check(out.mesh).components, 1);
     // A camera nearby does not see all of the back: a cone of rays takes its place.
     EXPECT_NEAR(volume(out.mesh) / volume(model), focal > 0 ? 0.87 : 0.985, focal > 0 ? 0.13 : 0.02);
     EXPECT_GT(out.walls, 0);
@@ -196,21 +197,21 @@ TEST(DepthSolid, TornOnlyWhereThereIsNothingBetween) {
   disc(front, 25, 20, 15, 50), disc(back, 25, 20, 15, 70);
   cv::Mat near_front = front.clone(), near_back = back.clone();
   disc(near_front, 38, 20, 9, 10), disc(near_back, 38, 20, 9, 20);
-  const DepthMesh apart = mesh_of(near_front, near_back);
+  const render::DepthMesh apart = mesh_of(near_front, near_back);
   expect_closed(apart.mesh);
-  EXPECT_EQ(check(apart.mesh).components, 2) << "an arm before a body";
+  EXPECT_EQ(mesh::check(apart.mesh).components, 2) << "an arm before a body";
   near_front = front.clone(), near_back = back.clone();
   disc(near_front, 25, 20, 6, 10);
-  const DepthMesh nose = mesh_of(near_front, near_back);
+  const render::DepthMesh nose = mesh_of(near_front, near_back);
   expect_closed(nose.mesh);
-  EXPECT_EQ(check(nose.mesh).components, 1) << "a nose on a face";
+  EXPECT_EQ(mesh::check(nose.mesh).components, 1) << "a nose on a face";
 }
 
 TEST(DepthSolid, ThinAndReversedBacksGetAThickness) {
   cv::Mat front = background(30, 30), back = background(30, 30);
   disc(front, 15, 15, 10, 5), disc(back, 15, 15, 10, 5);
   back.at<float>(15, 15) = 2, back.at<float>(15, 16) = kNaN;
-  const DepthMesh out = mesh_of(front, back);
+  const render::DepthMesh out = mesh_of(front, back);
   expect_closed(out.mesh);
   EXPECT_EQ(out.back_before, 2);
   EXPECT_EQ(out.mesh.bounds().min().z(), -5.5);
@@ -229,8 +230,8 @@ TEST(DepthSolid, AnyRasterGivesAManifold) {
       }
     const double jump = random.uniform(0.1, 15), focal = seed % 2 ? 30 : 0;
     try {
-      const MeshCheck sheet = check(mesh_of(front, {}, jump, focal).mesh);
-      EXPECT_TRUE(sheet.manifold() && sheet.oriented() && sheet.unused_vertices == 0) << seed << to_string(sheet);
+      const mesh::MeshCheck sheet = mesh::check(mesh_of(front, {}, jump, focal).mesh);
+      EXPECT_TRUE(sheet.manifold() && sheet.oriented() && sheet.unused_vertices == 0) << seed << mesh::to_string(sheet);
     } catch (const UserError&) {  // all torn
     }
     try {
@@ -261,7 +262,7 @@ TEST(DepthMesh, WhatCannotBeMeshed) {
 TEST(DepthMesh, CanBeCancelled) {
   Progress cancelling([](int percent, const char*) { return percent < 20; });
   const cv::Mat depth(200, 200, CV_32F, cv::Scalar(3));
-  EXPECT_THROW(depth_to_mesh(depth, {}, raster_camera(depth.size(), 1, 0), {}, cancelling), Cancelled);
+  EXPECT_THROW(render::depth_to_mesh(depth, {}, render::raster_camera(depth.size(), 1, 0), {}, cancelling), Cancelled);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace parts::test {
 namespace {
 
 /// Busts, rendered as they are asked for; one may be kept out.
-class Busts : public ExampleSource {
+class Busts : public examples::ExampleSource {
  public:
   explicit Busts(int without = -1, bool back = true) : back_(back) {
     for (int k = 0; k < count; ++k)
@@ -28,31 +28,31 @@ class Busts : public ExampleSource {
   int size() const override { return int(kept_.size()); }
   const std::string& name(int k) const override { return model(kept_[k]).name; }
   cv::Size image_size() const override { return {options().width, options().height}; }
-  std::vector<View> views(int) const override { return {}; }
-  Example get(int k, const View& view) override {
-    Example e = see(kept_[k], view, light_);
+  std::vector<render::View> views(int) const override { return {}; }
+  examples::Example get(int k, const render::View& view) override {
+    examples::Example e = see(kept_[k], view, light_);
     if (!back_) e.back_depth = cv::Mat();
     return e;
   }
-  const ClassPreset& preset() const override { return preset_; }
-  std::optional<Light> light() const override { return light_; }
-  void set_light(const Light& light) override { light_ = light; }
+  const io::ClassPreset& preset() const override { return preset_; }
+  std::optional<examples::Light> light() const override { return light_; }
+  void set_light(const examples::Light& light) override { light_ = light; }
 
-  static Example see(int k, const View& view, const Light& light = {}) {
-    ExampleOptions o = options();
+  static examples::Example see(int k, const render::View& view, const examples::Light& light = {}) {
+    examples::ExampleOptions o = options();
     o.light = light.direction, o.ambient = light.ambient;
-    return render_example(model(k), view, 36, o);
+    return examples::render_example(model(k), view, 36, o);
   }
 
  private:
-  static ExampleOptions options() {
-    ExampleOptions o;
+  static examples::ExampleOptions options() {
+    examples::ExampleOptions o;
     o.width = 75, o.height = 100;
     return o;
   }
-  static const ClassModel& model(int k) {
-    static const std::vector<ClassModel> all = [] {
-      std::vector<ClassModel> list(count);
+  static const examples::ClassModel& model(int k) {
+    static const std::vector<examples::ClassModel> all = [] {
+      std::vector<examples::ClassModel> list(count);
       for (int i = 0; i < count; ++i) {
         list[i].name = "bust_" + std::to_string(i);
         list[i].mesh = bust(unsigned(i + 1), 40);
@@ -67,19 +67,20 @@ class Busts : public ExampleSource {
 
   std::vector<int> kept_;
   bool back_;
-  Light light_;
-  ClassPreset preset_;
+  examples::Light light_;
+  io::ClassPreset preset_;
 };
 
-DepthOptions known_view() {
-  DepthOptions o;
+depth::DepthOptions known_view() {
+  depth::DepthOptions o;
   o.update_views = o.align = false;
   return o;
 }
 
-DepthResult run(const DepthQuery& query, ExampleSource& source, const DepthOptions& options) {
+depth::DepthResult run(const depth::DepthQuery& query, examples::ExampleSource& source,
+                       const depth::DepthOptions& options) {
   Progress progress;
-  return reconstruct_depth(query, source, options, progress);
+  return depth::reconstruct_depth(query, source, options, progress);
 }
 
 /// Standard deviation of the difference as a share of the depth range.
@@ -99,12 +100,12 @@ TEST(Depth, OfAMemberThatIsNotInTheDatabase) {
   double ours = 0, means = 0;
   for (int k : {0, 3, 6}) {
     Busts others(k);
-    const Example truth = Busts::see(k, {0, 0});
-    const DepthResult r = run({truth.image, truth.mask}, others, known_view());
+    const examples::Example truth = Busts::see(k, {0, 0});
+    const depth::DepthResult r = run({truth.image, truth.mask}, others, known_view());
     cv::Mat mean = cv::Mat::zeros(truth.depth.size(), CV_32F);
     for (int i = 0; i < others.size(); ++i) {
-      const Example e = others.get(i, {0, 0});
-      mean += extend(e.depth, e.mask) / others.size();
+      const examples::Example e = others.get(i, {0, 0});
+      mean += synthesis::extend(e.depth, e.mask) / others.size();
     }
     ours += error(r.depth, truth.depth, truth.mask);
     means += error(mean, truth.depth, truth.mask);
@@ -120,13 +121,13 @@ TEST(Depth, OfAMemberThatIsNotInTheDatabase) {
 
 TEST(Depth, ThreadsDoNotMatter) {
   Busts others(2);
-  const Example truth = Busts::see(2, {10, 5});
-  DepthOptions o;
+  const examples::Example truth = Busts::see(2, {10, 5});
+  depth::DepthOptions o;
   o.back = true;
   o.threads = 1;
-  const DepthResult one = run({truth.image, truth.mask}, others, o);
+  const depth::DepthResult one = run({truth.image, truth.mask}, others, o);
   o.threads = 3;
-  const DepthResult three = run({truth.image, truth.mask}, others, o);
+  const depth::DepthResult three = run({truth.image, truth.mask}, others, o);
   const auto same = [](const cv::Mat& a, const cv::Mat& b, const cv::Mat& mask) {
     return cv::norm(a, b, cv::NORM_INF, mask) == 0;
   };
@@ -137,14 +138,14 @@ TEST(Depth, ThreadsDoNotMatter) {
 
 TEST(Depth, FindsTheView) {
   int found = 0;
-  const View views[] = {{25, 10}, {-20, -15}, {0, 20}};
-  for (const View& view : views) {
+  const render::View views[] = {{25, 10}, {-20, -15}, {0, 20}};
+  for (const render::View& view : views) {
     Busts others(1);
-    const Example truth = Busts::see(1, view);
-    DepthOptions o;
+    const examples::Example truth = Busts::see(1, view);
+    depth::DepthOptions o;
     o.align = false;
-    const DepthResult r = run({truth.image, truth.mask}, others, o);
-    found += angle_between(r.view, view) < 8;
+    const depth::DepthResult r = run({truth.image, truth.mask}, others, o);
+    found += examples::angle_between(r.view, view) < 8;
   }
   EXPECT_GE(found, 2);
 }
@@ -154,26 +155,26 @@ TEST(Depth, FindsTheLight) {
   double with = 0, without = 0;
   for (int k : {1, 4}) {
     Busts others(k);
-    const Example truth = Busts::see(k, {0, 0}, {left, 0.35});
-    DepthOptions o = known_view();
-    const DepthResult r = run({truth.image, truth.mask}, others, o);
+    const examples::Example truth = Busts::see(k, {0, 0}, {left, 0.35});
+    depth::DepthOptions o = known_view();
+    const depth::DepthResult r = run({truth.image, truth.mask}, others, o);
     EXPECT_GT(r.light->direction.normalized().dot(left.normalized()), 0.85) << r.light->direction.transpose();
-    EXPECT_EQ(others.light()->direction, Light().direction) << "the source is left as it was";
+    EXPECT_EQ(others.light()->direction, examples::Light().direction) << "the source is left as it was";
     with += error(r.depth, truth.depth, truth.mask);
     o.update_light = false;
     without += error(run({truth.image, truth.mask}, others, o).depth, truth.depth, truth.mask);
-    const Example same = Busts::see(k, {0, 0});
-    EXPECT_EQ(run({same.image, same.mask}, others, known_view()).light->direction, Light().direction);
+    const examples::Example same = Busts::see(k, {0, 0});
+    EXPECT_EQ(run({same.image, same.mask}, others, known_view()).light->direction, examples::Light().direction);
   }
   EXPECT_LT(with, 0.8 * without);
 }
 
 TEST(Depth, TheBackIsBehindTheFront) {
   Busts others(4);
-  const Example truth = Busts::see(4, {0, 0});
-  DepthOptions o = known_view();
+  const examples::Example truth = Busts::see(4, {0, 0});
+  depth::DepthOptions o = known_view();
   o.back = true;
-  const DepthResult r = run({truth.image, truth.mask}, others, o);
+  const depth::DepthResult r = run({truth.image, truth.mask}, others, o);
   EXPECT_EQ(cv::countNonZero((r.back_depth < r.depth) & r.mask), 0);
   EXPECT_LT(error(r.back_depth, truth.back_depth, truth.mask), 0.25);
   Busts without(4, false);
@@ -182,24 +183,25 @@ TEST(Depth, TheBackIsBehindTheFront) {
 
 TEST(Depth, AlignsATurnedAndLargerImage) {
   Busts others(5);
-  const Example truth = Busts::see(5, {0, 0});
+  const examples::Example truth = Busts::see(5, {0, 0});
   const cv::Mat turn = cv::getRotationMatrix2D({37, 50}, 15, 1.0);
   cv::Mat image, mask;
   cv::Mat matrix = turn * 1.6;
   cv::warpAffine(truth.image, image, matrix, {120, 160}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar::all(255));
   cv::warpAffine(truth.mask, mask, matrix, {120, 160}, cv::INTER_NEAREST);
-  DepthOptions o;
+  depth::DepthOptions o;
   o.update_views = false;
-  const DepthResult r = run({image, mask}, others, o);
+  const depth::DepthResult r = run({image, mask}, others, o);
   EXPECT_NEAR(r.rotation, -15, 6);
   EXPECT_NEAR(r.scale, 1 / 1.6, 0.12);
   cv::Mat depth;
-  cv::warpAffine(extend(truth.depth, truth.mask), depth, matrix, {120, 160}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::warpAffine(synthesis::extend(truth.depth, truth.mask), depth, matrix, {120, 160}, cv::INTER_LINEAR,
+                 cv::BORDER_REPLICATE);
   EXPECT_LT(error(r.depth, depth, mask), 0.1);
 }
 
 TEST(Depth, PlacementsTurnAboutThePointTheySay) {
-  Placement p;
+  depth::Placement p;
   p.scale = 2, p.rotation = 90, p.from = {10, 20}, p.to = {5, 6};
   const cv::Vec2d up = p.matrix() * cv::Vec3d(11, 20, 1);  // anticlockwise: right becomes up
   EXPECT_NEAR(up[0], 5, 1e-9);
@@ -215,36 +217,36 @@ TEST(Depth, NoiseIsNotTrusted) {
   cv::RNG noise(3);
   noise.fill(image, cv::RNG::UNIFORM, 0, 255);
   cv::rectangle(mask, {20, 10, 35, 70}, 255, cv::FILLED);
-  const DepthResult r = run({image, mask}, all, known_view());
+  const depth::DepthResult r = run({image, mask}, all, known_view());
   EXPECT_FALSE(r.trusted) << r.strangeness;
 }
 
 TEST(Depth, FindsTheForegroundBeforePlainAndUnevenBackgrounds) {
   Busts others(7);
-  const Example truth = Busts::see(7, {0, 0});
-  const cv::Mat plain = plain_background_mask(truth.image);
+  const examples::Example truth = Busts::see(7, {0, 0});
+  const cv::Mat plain = depth::plain_background_mask(truth.image);
   EXPECT_GT(overlap(plain, truth.mask), 0.98);
   cv::Mat image = truth.image.clone();
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)
       if (!truth.mask.at<uchar>(y, x)) image.at<cv::Vec3b>(y, x) = {uchar(120 + x), uchar(60 + y / 2), 20};
-  EXPECT_TRUE(plain_background_mask(image).empty());
-  DepthOptions o = known_view();
+  EXPECT_TRUE(depth::plain_background_mask(image).empty());
+  depth::DepthOptions o = known_view();
   EXPECT_THROW(run({image, cv::Mat()}, others, o), UserError);
   o.segment = true;
-  const DepthResult r = run({image, cv::Mat()}, others, o);
+  const depth::DepthResult r = run({image, cv::Mat()}, others, o);
   EXPECT_GT(overlap(r.mask, truth.mask), 0.9);
 }
 
 TEST(Depth, SaysWhatIsWrong) {
   Busts all;
-  const Example e = Busts::see(0, {0, 0});
-  const DepthOptions o = known_view();
+  const examples::Example e = Busts::see(0, {0, 0});
+  const depth::DepthOptions o = known_view();
   EXPECT_THROW(run({cv::Mat(), cv::Mat()}, all, o), UserError);
   EXPECT_THROW(run({cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(9)), cv::Mat()}, all, o), UserError);
   EXPECT_THROW(run({e.image, cv::Mat(10, 10, CV_8U, cv::Scalar(255))}, all, o), UserError);
   EXPECT_THROW(run({e.image, cv::Mat::zeros(e.mask.size(), CV_8U)}, all, o), UserError);
-  DepthOptions bad = o;
+  depth::DepthOptions bad = o;
   bad.intensity = -1;
   EXPECT_THROW(run({e.image, e.mask}, all, bad), UserError);
   bad = o;

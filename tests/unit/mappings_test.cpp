@@ -59,14 +59,16 @@ struct Mappings : testing::Test {
       for (Vec3& v : blob.vertices) v = Vec3(v.x(), 1.4 * v.y(), v.z()) * (i == 2 ? 1000 : 1 + 0.1 * i);
       for (const Vec3& v : blob.vertices)
         blob.vertex_color.push_back({std::uint8_t(128 + 100 * std::sin(5 * v.x())), std::uint8_t(60 * i), 90, 255});
-      write_mesh(blob, (folder / "models" / ("blob_" + std::to_string(i) + ".ply")).string());
+      io::write_mesh(blob, (folder / "models" / ("blob_" + std::to_string(i) + ".ply")).string());
     }
     options.width = 60, options.height = 80;
   }
   ~Mappings() override { fs::remove_all(folder); }
   std::string at(const char* name) const { return (folder / name).string(); }
-  ModelDatabase models() { return ModelDatabase(at("models"), progress); }
-  MappingsReport build(const std::string& output) { return build_mappings(models(), views, output, options, progress); }
+  io::ModelDatabase models() { return io::ModelDatabase(at("models"), progress); }
+  examples::MappingsReport build(const std::string& output) {
+    return examples::build_mappings(models(), views, output, options, progress);
+  }
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -76,19 +78,19 @@ struct Mappings : testing::Test {
 
   fs::path folder;
   Progress progress;
-  ExampleOptions options;
-  std::vector<View> views = {{0, 0}, {30, -15}};
+  examples::ExampleOptions options;
+  std::vector<render::View> views = {{0, 0}, {30, -15}};
 };
 
 TEST(MlpCamera, ProjectsAsMeshLabDoes) {
   // vcglib: q = R (p - eye), q.z negated; perspective: q * focal / q.z; then pixels = q / size + centre, from below.
-  const Eigen::Matrix3d rotation = view_rotation({30, 20}, {0, 1, 0}, {0, 0, 1});
+  const Eigen::Matrix3d rotation = render::view_rotation({30, 20}, {0, 1, 0}, {0, 0, 1});
   for (const bool pinhole : {false, true}) {
     const Box box(Vec3(-1, -2, -1), Vec3(1, 2, 3));
-    Camera camera =
-        pinhole ? pinhole_camera(rotation, box, 150, 200, 300) : orthographic_camera(rotation, box, 150, 200);
+    render::Camera camera =
+        pinhole ? pinhole_camera(rotation, box, 150, 200, 300) : render::orthographic_camera(rotation, box, 150, 200);
     camera.center += Eigen::Vector2d(3, -7);
-    const MlpCamera mlp = to_mlp(camera, 5);
+    const io::MlpCamera mlp = render::to_mlp(camera, 5);
     for (const Vec3& p : {Vec3(0.3, -0.7, 0.2), Vec3(-1, 2, 1)}) {
       const Vec3 q = mlp.rotation * (p + mlp.translation);
       Eigen::Vector2d local = q.head<2>();
@@ -97,52 +99,53 @@ TEST(MlpCamera, ProjectsAsMeshLabDoes) {
       const Vec3 ours = camera.project(p);
       EXPECT_NEAR(px.x(), ours.x(), 1e-9);
       EXPECT_NEAR(mlp.viewport_px.y() - px.y(), ours.y(), 1e-9);
-      EXPECT_LT((from_mlp(mlp, "r").project(p) - ours).norm(), 1e-9);
+      EXPECT_LT((render::from_mlp(mlp, "r").project(p) - ours).norm(), 1e-9);
     }
     EXPECT_EQ(mlp.type, pinhole ? 0 : 1);
   }
 }
 
 TEST(MlpCamera, WhatIsNoCamera) {
-  EXPECT_NE(sentence([] { from_mlp({}, "a"); }).find("\"a\" has no camera"), std::string::npos);
-  Camera camera;
+  EXPECT_NE(sentence([] { render::from_mlp({}, "a"); }).find("\"a\" has no camera"), std::string::npos);
+  render::Camera camera;
   camera.width = 4, camera.height = 3;
-  MlpCamera mlp = to_mlp(camera, 1);
+  io::MlpCamera mlp = render::to_mlp(camera, 1);
   mlp.viewport_px.setZero();
-  EXPECT_NE(sentence([&] { from_mlp(mlp, "a"); }).find("viewport"), std::string::npos);
-  mlp = to_mlp(camera, 1);
+  EXPECT_NE(sentence([&] { render::from_mlp(mlp, "a"); }).find("viewport"), std::string::npos);
+  mlp = render::to_mlp(camera, 1);
   mlp.pixel_mm.x() = 0;
-  EXPECT_NE(sentence([&] { from_mlp(mlp, "a"); }).find("pixels"), std::string::npos);
-  mlp = to_mlp(camera, 1);
+  EXPECT_NE(sentence([&] { render::from_mlp(mlp, "a"); }).find("pixels"), std::string::npos);
+  mlp = render::to_mlp(camera, 1);
   mlp.type = 0, mlp.focal_mm = 0;
-  EXPECT_NE(sentence([&] { from_mlp(mlp, "a"); }).find("focal"), std::string::npos);
-  mlp = to_mlp(camera, 1);
+  EXPECT_NE(sentence([&] { render::from_mlp(mlp, "a"); }).find("focal"), std::string::npos);
+  mlp = render::to_mlp(camera, 1);
   mlp.rotation.setZero();
-  EXPECT_NE(sentence([&] { from_mlp(mlp, "a"); }).find("rotation"), std::string::npos);
+  EXPECT_NE(sentence([&] { render::from_mlp(mlp, "a"); }).find("rotation"), std::string::npos);
 }
 
 TEST(Views, AnglesBetween) {
-  EXPECT_NEAR(angle_between({10, 0}, {40, 0}), 30, 1e-9);
-  EXPECT_NEAR(angle_between({0, -20}, {0, 15}), 35, 1e-9);
-  EXPECT_NEAR(angle_between({0, 90}, {123, 90}), 0, 1e-6);
-  EXPECT_NEAR(angle_between({170, 0}, {-170, 0}), 20, 1e-9);
+  EXPECT_NEAR(examples::angle_between({10, 0}, {40, 0}), 30, 1e-9);
+  EXPECT_NEAR(examples::angle_between({0, -20}, {0, 15}), 35, 1e-9);
+  EXPECT_NEAR(examples::angle_between({0, 90}, {123, 90}), 0, 1e-6);
+  EXPECT_NEAR(examples::angle_between({170, 0}, {-170, 0}), 20, 1e-9);
 }
 
 TEST_F(Mappings, ModelsAreFramedAlike) {
-  const auto source = render_examples(models(), views, options, progress);
+  const auto source = examples::render_examples(models(), views, options, progress);
   ASSERT_EQ(source->size(), 3);
   EXPECT_EQ(source->image_size(), cv::Size(60, 80));
   EXPECT_TRUE(source->views(0).empty());
   double area[3], middle[3], scale[3];
   for (int i = 0; i < 3; ++i) {
-    const Example e = source->get(i, {0, 0});
+    const examples::Example e = source->get(i, {0, 0});
     EXPECT_EQ(e.object, source->name(i));
-    EXPECT_TRUE(same(e.mask, depth_mask(e.depth)));
-    EXPECT_TRUE(same(e.mask, depth_mask(e.back_depth)));
+    EXPECT_TRUE(same(e.mask, io::depth_mask(e.depth)));
+    EXPECT_TRUE(same(e.mask, io::depth_mask(e.back_depth)));
     area[i] = cv::countNonZero(e.mask);
     scale[i] = e.pixels_per_unit();
     middle[i] = 0.5 * (cv::mean(e.depth, e.mask)[0] + cv::mean(e.back_depth, e.mask)[0]) * scale[i];
-    for (const View& v : {View{35, 0}, View{-35, -25}, View{65, 10}}) {  // nothing is cut off on the way
+    for (const render::View& v :
+         {render::View{35, 0}, render::View{-35, -25}, render::View{65, 10}}) {  // nothing is cut off on the way
       const cv::Mat mask = source->get(i, v).mask;
       const int rim = cv::countNonZero(mask.row(0)) + cv::countNonZero(mask.row(79)) + cv::countNonZero(mask.col(0)) +
                       cv::countNonZero(mask.col(59));
@@ -157,11 +160,11 @@ TEST_F(Mappings, ModelsAreFramedAlike) {
 }
 
 TEST_F(Mappings, AStoredDatabaseGivesWhatWasRendered) {
-  const MappingsReport report = build(at("db/class.mlp"));
+  const examples::MappingsReport report = build(at("db/class.mlp"));
   EXPECT_EQ(report.objects, 3);
   EXPECT_EQ(report.examples, 6);
   EXPECT_GT(report.megabytes, 0.1);
-  const auto stored = open_examples(at("db/class.mlp"), views, options, progress);
+  const auto stored = examples::open_examples(at("db/class.mlp"), views, options, progress);
   ASSERT_EQ(stored->size(), 3);
   EXPECT_EQ(stored->image_size(), cv::Size(60, 80));
   EXPECT_EQ(*stored->preset().up, Vec3(0, 1, 0));
@@ -169,10 +172,10 @@ TEST_F(Mappings, AStoredDatabaseGivesWhatWasRendered) {
     ASSERT_EQ(stored->views(i).size(), 2u);
     EXPECT_EQ(stored->views(i)[1].yaw, 30);
     EXPECT_EQ(stored->views(i)[1].pitch, -15);
-    const Example a = stored->get(i, {25, 0}), again = stored->get(i, {25, 0});
+    const examples::Example a = stored->get(i, {25, 0}), again = stored->get(i, {25, 0});
     EXPECT_EQ(a.view.yaw, 30) << "the nearest view";
     EXPECT_TRUE(same(a.depth, again.depth));
-    EXPECT_TRUE(same(a.mask, depth_mask(a.depth)));
+    EXPECT_TRUE(same(a.mask, io::depth_mask(a.depth)));
     EXPECT_EQ(a.object, "blob_" + std::to_string(i) + ".ply");
     // Points seen through the stored camera lie on the model.
     const Mesh mesh = models().load(i);
@@ -183,14 +186,14 @@ TEST_F(Mappings, AStoredDatabaseGivesWhatWasRendered) {
     EXPECT_GT(a.back_depth.at<float>(40, 30), a.depth.at<float>(40, 30));
   }
   // The same rendering, if framed for the same views.
-  const MlpProject project = read_mlp(at("db/class.mlp"));
+  const io::MlpProject project = io::read_mlp(at("db/class.mlp"));
   ASSERT_EQ(project.rasters.size(), 6u);
   ASSERT_EQ(project.meshes.size(), 1u) << "for MeshLab to show";
-  const Mesh surface = read_mesh(project.meshes[0].file);
+  const Mesh surface = io::read_mesh(project.meshes[0].file);
   EXPECT_TRUE(fs::equivalent(surface.textures.at(0), project.rasters[0].planes[0].file));
-  for (const MlpRaster& r : project.rasters) {
+  for (const io::MlpRaster& r : project.rasters) {
     ASSERT_EQ(r.planes.size(), 4u);
-    EXPECT_EQ(r.planes[0].semantic, plane::kColor) << "MeshLab shows the first plane";
+    EXPECT_EQ(r.planes[0].semantic, io::plane::kColor) << "MeshLab shows the first plane";
     EXPECT_EQ(r.camera.type, 1);
   }
 }
@@ -198,9 +201,9 @@ TEST_F(Mappings, AStoredDatabaseGivesWhatWasRendered) {
 TEST_F(Mappings, WithoutBackSide) {
   options.back = false;
   build(at("class.mlp"));
-  const auto stored = open_mapping_database(at("class.mlp"), progress);
+  const auto stored = examples::open_mapping_database(at("class.mlp"), progress);
   EXPECT_TRUE(stored->get(0, {0, 0}).back_depth.empty());
-  EXPECT_EQ(read_mlp(at("class.mlp")).rasters[0].planes.size(), 3u);
+  EXPECT_EQ(io::read_mlp(at("class.mlp")).rasters[0].planes.size(), 3u);
 }
 
 TEST_F(Mappings, BuildingAgainReplaces) {
@@ -209,7 +212,7 @@ TEST_F(Mappings, BuildingAgainReplaces) {
   std::ofstream(folder / "class_mappings" / "mine.txt") << "of the user";
   views = {{10, 0}};
   build(at("class.mlp"));
-  const auto stored = open_mapping_database(at("class.mlp"), progress);
+  const auto stored = examples::open_mapping_database(at("class.mlp"), progress);
   EXPECT_EQ(stored->views(0).size(), 1u);
   int images = 0;
   for (const std::string& name : files()) images += name.find("class_mappings/0") == 0;
@@ -221,7 +224,7 @@ TEST_F(Mappings, CancellingLeavesNothing) {
   const std::set<std::string> before = files();
   int calls = 0;
   Progress cancelling([&](int percent, const char*) { return ++calls < 6 || percent < 40; });
-  EXPECT_THROW(build_mappings(models(), views, at("class.mlp"), options, cancelling), Cancelled);
+  EXPECT_THROW(examples::build_mappings(models(), views, at("class.mlp"), options, cancelling), Cancelled);
   EXPECT_EQ(files(), before);
 }
 
@@ -229,12 +232,14 @@ TEST_F(Mappings, OutputsThatWouldDoHarm) {
   EXPECT_NE(sentence([&] { build(""); }).find("No output"), std::string::npos);
   EXPECT_NE(sentence([&] { build(at("class.txt")); }).find(".mlp"), std::string::npos);
   EXPECT_NE(sentence([&] { build(at("models")); }).find(".mlp"), std::string::npos);
-  MlpProject project;
+  io::MlpProject project;
   project.meshes.push_back({"blob", at("models/blob_0.ply"), Eigen::Matrix4d::Identity()});
-  write_mlp(project, at("models.mlp"));
+  io::write_mlp(project, at("models.mlp"));
   EXPECT_NE(sentence([&] { build(at("models.mlp")); }).find("another name"), std::string::npos);
-  const ModelDatabase itself(at("models.mlp"), progress);
-  EXPECT_NE(sentence([&] { build_mappings(itself, views, at("models.mlp"), options, progress); }).find("is the model"),
+  const io::ModelDatabase itself(at("models.mlp"), progress);
+  EXPECT_NE(sentence([&] {
+              examples::build_mappings(itself, views, at("models.mlp"), options, progress);
+            }).find("is the model"),
             std::string::npos);
   std::ofstream(at("file")) << "x";
   EXPECT_NE(sentence([&] { build(at("file/class.mlp")); }).find("cannot be made"), std::string::npos);
@@ -244,47 +249,48 @@ TEST_F(Mappings, OutputsThatWouldDoHarm) {
 
 TEST_F(Mappings, DamagedDatabasesAreNamed) {
   build(at("class.mlp"));
-  const MlpProject whole = read_mlp(at("class.mlp"));
-  const std::string depth = whole.rasters[1].file_of(plane::kDepth);
-  const auto opened = [&] { return open_mapping_database(at("class.mlp"), progress); };
+  const io::MlpProject whole = io::read_mlp(at("class.mlp"));
+  const std::string depth = whole.rasters[1].file_of(io::plane::kDepth);
+  const auto opened = [&] { return examples::open_mapping_database(at("class.mlp"), progress); };
 
   fs::rename(depth, depth + ".away");
   EXPECT_NE(sentence([&] { opened(); }).find(fs::path(depth).filename().string() + "\" of the database"),
             std::string::npos);
-  write_depth(cv::Mat(5, 5, CV_32F, cv::Scalar(1)), depth);
+  io::write_depth(cv::Mat(5, 5, CV_32F, cv::Scalar(1)), depth);
   EXPECT_NE(sentence([&] { opened(); }).find("5 x 5 pixels"), std::string::npos);
-  write_depth(cv::Mat(80, 60, CV_32F, cv::Scalar(NAN)), depth);
+  io::write_depth(cv::Mat(80, 60, CV_32F, cv::Scalar(NAN)), depth);
   EXPECT_NE(sentence([&] { opened()->get(0, {30, -15}); }).find("background everywhere"), std::string::npos);
   fs::rename(depth + ".away", depth);
 
-  MlpProject broken = whole;
+  io::MlpProject broken = whole;
   broken.rasters[0].camera.given = false;
-  for (MlpRaster& r : broken.rasters)
-    for (MlpPlane& p : r.planes)
-      if (p.semantic == plane::kDepth) p.semantic = plane::kColor;
-  write_mlp(broken, at("class.mlp"));
+  for (io::MlpRaster& r : broken.rasters)
+    for (io::MlpPlane& p : r.planes)
+      if (p.semantic == io::plane::kDepth) p.semantic = io::plane::kColor;
+  io::write_mlp(broken, at("class.mlp"));
   EXPECT_NE(sentence([&] { opened(); }).find("no raster with a depth plane"), std::string::npos);
-  write_mlp({}, at("class.mlp"));
-  EXPECT_NE(sentence([&] { open_examples(at("class.mlp"), views, options, progress); }).find("neither models nor"),
-            std::string::npos);
+  io::write_mlp({}, at("class.mlp"));
+  EXPECT_NE(
+      sentence([&] { examples::open_examples(at("class.mlp"), views, options, progress); }).find("neither models nor"),
+      std::string::npos);
 }
 
 TEST_F(Mappings, AUsersOwnDatabase) {
   // No mask, no back, labels without views, another order: what can be made in MeshLab itself.
-  const auto rendered = render_examples(models(), views, options, progress);
-  const Example e = rendered->get(1, {-40, 20});
-  write_image(e.image, at("photo.png"));
-  write_depth(e.depth, at("photo.pfm"));
-  MlpProject project;
+  const auto rendered = examples::render_examples(models(), views, options, progress);
+  const examples::Example e = rendered->get(1, {-40, 20});
+  io::write_image(e.image, at("photo.png"));
+  io::write_depth(e.depth, at("photo.pfm"));
+  io::MlpProject project;
   project.rasters.resize(2);
   project.rasters[0].label = "a photo without depth";
   project.rasters[1].label = "a, b";
-  project.rasters[1].camera = to_mlp(e.camera, 1);
-  project.rasters[1].planes = {{plane::kDepth, at("photo.pfm")}, {plane::kColor, at("photo.png")}};
-  write_mlp(project, at("own.mlp"));
+  project.rasters[1].camera = render::to_mlp(e.camera, 1);
+  project.rasters[1].planes = {{io::plane::kDepth, at("photo.pfm")}, {io::plane::kColor, at("photo.png")}};
+  io::write_mlp(project, at("own.mlp"));
   std::vector<std::string> log;
   Progress logging({}, [&](const std::string& line) { log.push_back(line); });
-  const auto source = open_examples(at("own.mlp"), views, options, logging);
+  const auto source = examples::open_examples(at("own.mlp"), views, options, logging);
   ASSERT_EQ(source->size(), 1);
   EXPECT_EQ(source->name(0), "a, b");
   EXPECT_NEAR(source->views(0)[0].yaw, -40, 1e-6);
@@ -299,50 +305,51 @@ TEST_F(Mappings, ModelsThatCannotBeReadAreLeftOut) {
   std::ofstream(folder / "models" / "broken.obj") << "no mesh";
   std::vector<std::string> log;
   Progress logging({}, [&](const std::string& line) { log.push_back(line); });
-  EXPECT_EQ(render_examples(models(), views, options, logging)->size(), 3);
+  EXPECT_EQ(examples::render_examples(models(), views, options, logging)->size(), 3);
   EXPECT_NE(log.at(0).find("skipped: broken.obj"), std::string::npos);
   for (const auto& file : fs::directory_iterator(folder / "models"))
     if (file.path().extension() == ".ply") fs::remove(file.path());
-  EXPECT_NE(sentence([&] { render_examples(models(), views, options, progress); }).find("can be used"),
+  EXPECT_NE(sentence([&] { examples::render_examples(models(), views, options, progress); }).find("can be used"),
             std::string::npos);
 }
 
 TEST_F(Mappings, PresetsOfAClass) {
-  ClassPreset preset;
+  io::ClassPreset preset;
   preset.up = Vec3(0, 0, 1);
   preset.front = Vec3(0, -1, 0);
   preset.values["reconstruct_depth"] = {{"PatchSizes", "5,7"}, {"WeightPosition", "12.5"}, {"Examples", "8"}};
-  write_class_preset(preset, at("models"));
+  io::write_class_preset(preset, at("models"));
   EXPECT_TRUE(fs::exists(folder / "models" / "class.json"));
-  const ClassPreset back = read_class_preset(at("models"));
+  const io::ClassPreset back = io::read_class_preset(at("models"));
   EXPECT_EQ(*back.up, *preset.up);
   EXPECT_EQ(*back.text("reconstruct_depth", "PatchSizes"), "5,7");
   EXPECT_EQ(*back.number("reconstruct_depth", "WeightPosition"), 12.5);
   EXPECT_EQ(*back.number("reconstruct_depth", "Examples"), 8);
   EXPECT_FALSE(back.number("reconstruct_depth", "WeightDepth"));
   EXPECT_FALSE(back.number("colorize_depth", "Examples"));
-  EXPECT_EQ(render_examples(models(), views, options, progress)->preset().values, preset.values);
+  EXPECT_EQ(examples::render_examples(models(), views, options, progress)->preset().values, preset.values);
 
-  EXPECT_EQ(class_preset_path("x/heads.mlp"), "x/heads.class.json");
-  EXPECT_FALSE(read_class_preset(at("none.mlp")).up);
+  EXPECT_EQ(io::class_preset_path("x/heads.mlp"), "x/heads.class.json");
+  EXPECT_FALSE(io::read_class_preset(at("none.mlp")).up);
   build(at("class.mlp"));
-  EXPECT_EQ(open_mapping_database(at("class.mlp"), progress)->preset().values, preset.values) << "it goes along";
+  EXPECT_EQ(examples::open_mapping_database(at("class.mlp"), progress)->preset().values, preset.values)
+      << "it goes along";
 
   std::ofstream(folder / "models" / "class.json")
       << R"({ "Up": [0, 1], "Front": "x", "reconstruct_depth": { "A": 3 } })";
-  EXPECT_FALSE(read_class_preset(at("models")).up);
-  EXPECT_EQ(*read_class_preset(at("models")).number("reconstruct_depth", "A"), 3);
+  EXPECT_FALSE(io::read_class_preset(at("models")).up);
+  EXPECT_EQ(*io::read_class_preset(at("models")).number("reconstruct_depth", "A"), 3);
   for (const char* text : {"{ \"Up\": [0, 1", "words", "", "[1, 2]"}) {
     std::ofstream(folder / "models" / "class.json") << text;
-    EXPECT_NE(sentence([&] { read_class_preset(at("models")); }).find("JSON"), std::string::npos) << text;
+    EXPECT_NE(sentence([&] { io::read_class_preset(at("models")); }).find("JSON"), std::string::npos) << text;
   }
 }
 
 TEST_F(Mappings, TheSameForAnyNumberOfThreads) {
   options.threads = 1;
-  const Example one = render_examples(models(), views, options, progress)->get(0, {20, 10});
+  const examples::Example one = examples::render_examples(models(), views, options, progress)->get(0, {20, 10});
   options.threads = 3;
-  const Example three = render_examples(models(), views, options, progress)->get(0, {20, 10});
+  const examples::Example three = examples::render_examples(models(), views, options, progress)->get(0, {20, 10});
   EXPECT_TRUE(same(one.image, three.image));
   EXPECT_TRUE(same(one.depth, three.depth));
 }

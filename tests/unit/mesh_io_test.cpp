@@ -31,7 +31,7 @@ class MeshIo : public ::testing::Test {
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
   }
-  Mesh read(const std::string& name, const std::string& bytes) const { return read_mesh(file(name, bytes)); }
+  Mesh read(const std::string& name, const std::string& bytes) const { return io::read_mesh(file(name, bytes)); }
   /// The sentence that reading ends with; "" if it does not fail.
   std::string sentence(const std::string& name, const std::string& bytes) const {
     try {
@@ -75,8 +75,8 @@ void expect_same_wedges(const Mesh& a, const Mesh& b) {
 
 TEST_F(MeshIo, PlyKeepsEverything) {
   const Mesh mesh = with_everything();
-  write_mesh(mesh, path("m.ply"));
-  const Mesh back = read_mesh(path("m.ply"));
+  io::write_mesh(mesh, path("m.ply"));
+  const Mesh back = io::read_mesh(path("m.ply"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_normal, mesh.vertex_normal);
@@ -92,15 +92,15 @@ TEST_F(MeshIo, PlyKeepsEverything) {
 }
 
 TEST_F(MeshIo, PlyOfFloatsIsSmaller) {
-  write_mesh(test::box({0, 0, 0}, {1, 1, 1}), path("floats.ply"));
-  write_mesh(test::box({0, 0, 0}, {0.1, 0.1, 0.1}), path("doubles.ply"));
+  io::write_mesh(test::box({0, 0, 0}, {1, 1, 1}), path("floats.ply"));
+  io::write_mesh(test::box({0, 0, 0}, {0.1, 0.1, 0.1}), path("doubles.ply"));
   EXPECT_LT(fs::file_size(path("floats.ply")), fs::file_size(path("doubles.ply")));
 }
 
 TEST_F(MeshIo, ObjKeepsWhatItHolds) {
   const Mesh mesh = with_everything();
-  write_mesh(mesh, path("m.obj"));
-  const Mesh back = read_mesh(path("m.obj"));
+  io::write_mesh(mesh, path("m.obj"));
+  const Mesh back = io::read_mesh(path("m.obj"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_color, mesh.vertex_color);
@@ -122,8 +122,8 @@ TEST_F(MeshIo, ObjKeepsWhatItHolds) {
 
 TEST_F(MeshIo, OffKeepsWhatItHolds) {
   const Mesh mesh = with_everything();
-  write_mesh(mesh, path("m.off"));
-  const Mesh back = read_mesh(path("m.off"));
+  io::write_mesh(mesh, path("m.off"));
+  const Mesh back = io::read_mesh(path("m.off"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_color, mesh.vertex_color);
@@ -134,8 +134,8 @@ TEST_F(MeshIo, OffKeepsWhatItHolds) {
 TEST_F(MeshIo, TinyCoordinatesSurviveText) {
   const Mesh mesh = test::sphere({0, 0, 0}, 1e-6, 1);
   for (const char* name : {"m.obj", "m.off"}) {
-    write_mesh(mesh, path(name));
-    EXPECT_EQ(read_mesh(path(name)).vertices, mesh.vertices);
+    io::write_mesh(mesh, path(name));
+    EXPECT_EQ(io::read_mesh(path(name)).vertices, mesh.vertices);
   }
 }
 
@@ -145,8 +145,8 @@ TEST_F(MeshIo, TexturesAreNamedFromTheFileThatNamesThem) {
   Mesh mesh = with_everything();
   mesh.textures = {path("images/skin.png"), "missing.png"};
   for (const char* name : {"m.ply", "m.obj"}) {
-    write_mesh(mesh, path(name));
-    const Mesh back = read_mesh(path(name));
+    io::write_mesh(mesh, path(name));
+    const Mesh back = io::read_mesh(path(name));
     ASSERT_EQ(back.textures.size(), 2u);
     const bool skin_first = back.textures[0].find("skin") != std::string::npos;
     EXPECT_EQ(back.textures[skin_first ? 0 : 1], path("images/skin.png"));
@@ -193,7 +193,7 @@ TEST_F(MeshIo, ObjSeamsShareTheirVertices) {
                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 0.5 0\nvt 1 1\nvt 0.9 0.1\n"
                          "f 1/1 2/2 3/3\nf 2/4 4/3 3/1\n");
   EXPECT_EQ(mesh.vertex_count(), 4);
-  EXPECT_EQ(edge_map(mesh).boundary_edges, 4);
+  EXPECT_EQ(mesh::edge_map(mesh).boundary_edges, 4);
   EXPECT_EQ(mesh.wedges[0].uv[1], Eigen::Vector2f(0.5f, 0));
   EXPECT_EQ(mesh.wedges[1].uv[0], Eigen::Vector2f(0.9f, 0.1f));
 }
@@ -310,7 +310,7 @@ TEST_F(MeshIo, StlCornersAreWelded) {
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, -0.f, 1, 0};
   const Mesh mesh = read("b.stl", stl(corners, 2, 0x8000 | 31 << 10));
   EXPECT_EQ(mesh.vertex_count(), 4);
-  EXPECT_EQ(edge_map(mesh).boundary_edges, 4);
+  EXPECT_EQ(mesh::edge_map(mesh).boundary_edges, 4);
   EXPECT_EQ(mesh.face_color[0], (Color{255, 0, 0, 255}));
   const Mesh text =
       read("t.stl",
@@ -390,7 +390,7 @@ TEST_F(MeshIo, EveryCutOfAFileIsASentenceOrAMesh) {
   mesh.faces.resize(20);
   mesh.face_color.resize(20), mesh.face_quality.resize(20), mesh.face_selected.resize(20), mesh.wedges.resize(20);
   for (const char* name : {"m.ply", "m.obj", "m.off"}) {
-    write_mesh(mesh, path(name));
+    io::write_mesh(mesh, path(name));
     std::ifstream in(path(name), std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(in), {});
     for (std::size_t n = 0; n < bytes.size(); n += 1 + bytes.size() / 150) {
@@ -403,15 +403,15 @@ TEST_F(MeshIo, EveryCutOfAFileIsASentenceOrAMesh) {
 }
 
 TEST_F(MeshIo, FilesThatCannotBeOpened) {
-  EXPECT_THROW(read_mesh(path("missing.ply")), UserError);
+  EXPECT_THROW(io::read_mesh(path("missing.ply")), UserError);
   fs::create_directories(path("folder.ply"));
-  EXPECT_THROW(read_mesh(path("folder.ply")), UserError);
-  EXPECT_THROW(write_mesh(test::sphere(), path("folder.ply")), UserError);
-  EXPECT_THROW(write_mesh(test::sphere(), path("no/such/folder/a.ply")), UserError);
-  EXPECT_THROW(write_mesh(test::sphere(), path("a.stl")), UserError);
+  EXPECT_THROW(io::read_mesh(path("folder.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), path("folder.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), path("no/such/folder/a.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), path("a.stl")), UserError);
   if (fs::exists("/dev/full")) {
     fs::create_symlink("/dev/full", path("full.ply"));
-    EXPECT_THROW(write_mesh(test::sphere(), path("full.ply")), UserError);
+    EXPECT_THROW(io::write_mesh(test::sphere(), path("full.ply")), UserError);
   }
 }
 

@@ -34,13 +34,13 @@ Mesh small_shape(Random& random) {
 
 /// Two models in a grid of about n³: a third of them near-coincident copies, a
 /// third cut by a volume that leaves surface outside; constraints anywhere.
-JointVoxels random_voxels(unsigned seed, int n, std::vector<Eigen::Vector3f>* normal_a = nullptr,
-                          std::vector<Eigen::Vector3f>* normal_b = nullptr) {
+cut::JointVoxels random_voxels(unsigned seed, int n, std::vector<Eigen::Vector3f>* normal_a = nullptr,
+                               std::vector<Eigen::Vector3f>* normal_b = nullptr) {
   Random random(seed);
   for (;;) try {
       const Mesh shape = small_shape(random);
       const bool copy = random.below(3) == 0;
-      Part a{moved(shape, Eigen::Affine3d(random.rotation())), {}}, b;
+      cut::Part a{moved(shape, Eigen::Affine3d(random.rotation())), {}}, b;
       Eigen::Affine3d place = Eigen::Affine3d::Identity();
       place.translation() = random.direction() * (copy ? random.uniform(0, 0.1) : random.uniform(0.2, 1.2));
       place.linear() *= random.uniform(0.9, 1.1);
@@ -48,21 +48,21 @@ JointVoxels random_voxels(unsigned seed, int n, std::vector<Eigen::Vector3f>* no
         b.mesh = moved(a.mesh, place);
       else
         b.mesh = moved(moved(small_shape(random), Eigen::Affine3d(random.rotation())), place);
-      for (Part* part : {&a, &b}) {
+      for (cut::Part* part : {&a, &b}) {
         const Vec3 center = part->mesh.vertices[random.below(part->mesh.vertex_count())];
         const double radius = random.uniform(0.15, 0.5);
         part->keep = faces_where(part->mesh, [&](const Vec3& c) { return (c - center).norm() < radius; });
         part->keep[random.below(part->mesh.face_count())] = 1;
       }
-      Model ma = make_model(a, "A"), mb = make_model(b, "B");
-      Box volume = transition_volume(ma, mb, Box());
+      cut::Model ma = cut::make_model(a, "A"), mb = cut::make_model(b, "B");
+      Box volume = cut::transition_volume(ma, mb, Box());
       if (random.below(3) == 0)
-        volume = transition_volume(ma, mb, Box(-random.uniform(0.5, 0.9) * Vec3::Ones(), Vec3::Ones()));
-      JointVoxels voxels = joint_voxels(ma, mb, volume, n, 1);
+        volume = cut::transition_volume(ma, mb, Box(-random.uniform(0.5, 0.9) * Vec3::Ones(), Vec3::Ones()));
+      cut::JointVoxels voxels = cut::joint_voxels(ma, mb, volume, n, 1);
       for (std::uint8_t& flags : voxels.flags)
-        if ((flags & kKeepA) && (flags & kKeepB)) flags &= std::uint8_t(~kKeepB);
-      if (normal_a) *normal_a = voxel_normals(ma.prepared.mesh, voxels);
-      if (normal_b) *normal_b = voxel_normals(mb.prepared.mesh, voxels);
+        if ((flags & cut::kKeepA) && (flags & cut::kKeepB)) flags &= std::uint8_t(~cut::kKeepB);
+      if (normal_a) *normal_a = cut::voxel_normals(ma.prepared.mesh, voxels);
+      if (normal_b) *normal_b = cut::voxel_normals(mb.prepared.mesh, voxels);
       return voxels;
     } catch (const UserError&) {  // the volume misses something: another try
     }
@@ -80,8 +80,8 @@ std::ostream& operator<<(std::ostream& out, const Cost& c) {
 /// Visits the N6 edges of the full grid with their kind: 0 where one end is
 /// empty, 1 at intersection voxels, 2 where only boundary voxels meet.
 template <class Visit>
-void for_each_full_edge(const JointVoxels& voxels, const Visit& visit) {
-  const Grid& g = voxels.grid;
+void for_each_full_edge(const cut::JointVoxels& voxels, const Visit& visit) {
+  const cut::Grid& g = voxels.grid;
   for (std::size_t v = 0; v < g.count(); ++v) {
     const auto c = g.cell(v);
     for (int d = 0; d < 3; ++d) {
@@ -95,7 +95,7 @@ void for_each_full_edge(const JointVoxels& voxels, const Visit& visit) {
 }
 /// Outer pieces come after the voxels; they can be parted from intersection voxels.
 template <class Visit>
-void for_each_piece_edge(const JointVoxels& voxels, const Visit& visit) {
+void for_each_piece_edge(const cut::JointVoxels& voxels, const Visit& visit) {
   for (std::size_t k = 0; k < voxels.outer.size(); ++k)
     for (std::size_t v : voxels.outer[k].voxels)
       visit(voxels.grid.count() + k, v, voxels.both(voxels.set.node(v)) ? 1 : 3);
@@ -103,7 +103,7 @@ void for_each_piece_edge(const JointVoxels& voxels, const Visit& visit) {
 
 /// The minimum over all cuts of the full grid, empty voxels included, by
 /// lexicographic integers; and the check that the labels found really cost it.
-Cost full_grid_minimum(const JointVoxels& voxels) {
+Cost full_grid_minimum(const cut::JointVoxels& voxels) {
   std::int64_t count[4] = {0, 0, 0, 0};
   const auto add = [&](std::size_t, std::size_t, int kind) { ++count[kind]; };
   for_each_full_edge(voxels, add), for_each_piece_edge(voxels, add);
@@ -117,8 +117,8 @@ Cost full_grid_minimum(const JointVoxels& voxels) {
   };
   for_each_full_edge(voxels, join), for_each_piece_edge(voxels, join);
   for (int p = 0; p < voxels.size(); ++p)
-    graph.add_tweights(int(voxels.cells[p]), voxels.flags[p] & kKeepA ? kForbidden : 0,
-                       voxels.flags[p] & kKeepB ? kForbidden : 0);
+    graph.add_tweights(int(voxels.cells[p]), voxels.flags[p] & cut::kKeepA ? kForbidden : 0,
+                       voxels.flags[p] & cut::kKeepB ? kForbidden : 0);
   for (int k = 0; k < pieces; ++k)
     if (voxels.outer[k].keep)
       graph.add_tweights(n + k, voxels.outer[k].of_a ? kForbidden : 0, voxels.outer[k].of_a ? 0 : kForbidden);
@@ -135,7 +135,7 @@ Cost full_grid_minimum(const JointVoxels& voxels) {
   return cost;
 }
 
-Cost cost_of(const JointVoxels& voxels, const VoxelLabels& cut) {
+Cost cost_of(const cut::JointVoxels& voxels, const cut::VoxelLabels& cut) {
   Cost cost;
   const auto label = [&](std::size_t v) {
     return v < voxels.grid.count() ? cut.label[voxels.set.node(v)] : cut.outer[v - voxels.grid.count()];
@@ -147,18 +147,18 @@ Cost cost_of(const JointVoxels& voxels, const VoxelLabels& cut) {
   return cost;
 }
 
-void expect_constraints_hold(const JointVoxels& voxels, const VoxelLabels& cut) {
+void expect_constraints_hold(const cut::JointVoxels& voxels, const cut::VoxelLabels& cut) {
   for (int p = 0; p < voxels.size(); ++p) {
-    EXPECT_TRUE(!(voxels.flags[p] & kKeepA) || cut.label[p] != VoxelLabels::kB);
-    EXPECT_TRUE(!(voxels.flags[p] & kKeepB) || cut.label[p] != VoxelLabels::kA);
+    EXPECT_TRUE(!(voxels.flags[p] & cut::kKeepA) || cut.label[p] != cut::VoxelLabels::kB);
+    EXPECT_TRUE(!(voxels.flags[p] & cut::kKeepB) || cut.label[p] != cut::VoxelLabels::kA);
   }
   ASSERT_EQ(cut.outer.size(), voxels.outer.size());
   for (std::size_t k = 0; k < cut.outer.size(); ++k)
-    EXPECT_TRUE(!voxels.outer[k].keep || (cut.outer[k] == VoxelLabels::kA) == voxels.outer[k].of_a);
+    EXPECT_TRUE(!voxels.outer[k].keep || (cut.outer[k] == cut::VoxelLabels::kA) == voxels.outer[k].of_a);
 }
 
-void expect_thesis_optimum(const JointVoxels& voxels, const char* what) {
-  const VoxelLabels cut = thesis_cut(voxels);
+void expect_thesis_optimum(const cut::JointVoxels& voxels, const char* what) {
+  const cut::VoxelLabels cut = cut::thesis_cut(voxels);
   const Cost best = full_grid_minimum(voxels), found = cost_of(voxels, cut);
   EXPECT_EQ(found, best) << what;
   long k = 0;
@@ -173,9 +173,9 @@ TEST(ThesisCut, CostsTheMinimumOfTheFullGridIn240Scenes) {
   int connected = 0, with_pieces = 0;
   for (unsigned seed = 0; seed < 240; ++seed) {
     const int n = seed % 24 == 0 ? 32 : 8 + int(seed % 13);
-    const JointVoxels voxels = random_voxels(seed, n);
+    const cut::JointVoxels voxels = random_voxels(seed, n);
     expect_thesis_optimum(voxels, ("scene " + std::to_string(seed)).c_str());
-    connected += thesis_cut(voxels).connected, with_pieces += !voxels.outer.empty();
+    connected += cut::thesis_cut(voxels).connected, with_pieces += !voxels.outer.empty();
   }
   EXPECT_GT(connected, 180);
   EXPECT_GT(with_pieces, 20);
@@ -186,30 +186,30 @@ TEST(ThesisCut, CostsTheMinimumOfTheFullGridAt64) { expect_thesis_optimum(random
 TEST(ThesisCut, CountsAsTheEquationsDo) {
   // A row of voxels: A A (A B) (A B) B B, constraints at its ends. The cut
   // passes at an intersection voxel: one edge of 1/(10 k), k = 2.
-  Grid grid;
+  cut::Grid grid;
   grid.dims = {6, 1, 1};
-  VoxelSet a(6), b(6), keep_a(6), keep_b(6);
+  cut::VoxelSet a(6), b(6), keep_a(6), keep_b(6);
   for (const int i : {0, 1, 2, 3}) a.add(std::size_t(i));
   for (const int i : {2, 3, 4, 5}) b.add(std::size_t(i));
   keep_a.add(0), keep_b.add(5);
-  const VoxelLabels cut = thesis_cut(join(grid, a, b, keep_a, keep_b));
+  const cut::VoxelLabels cut = cut::thesis_cut(cut::join(grid, a, b, keep_a, keep_b));
   EXPECT_DOUBLE_EQ(cut.cost, 1 / 20.);
   EXPECT_TRUE(cut.connected);
-  EXPECT_EQ(cut.label.front(), VoxelLabels::kA);
-  EXPECT_EQ(cut.label.back(), VoxelLabels::kB);
+  EXPECT_EQ(cut.label.front(), cut::VoxelLabels::kA);
+  EXPECT_EQ(cut.label.back(), cut::VoxelLabels::kB);
   // Without an intersection voxel the two meet between 2 and 3: a boundary edge.
-  VoxelSet short_a(6), short_b(6);
+  cut::VoxelSet short_a(6), short_b(6);
   for (const int i : {0, 1, 2}) short_a.add(std::size_t(i)), short_b.add(std::size_t(i + 3));
-  EXPECT_DOUBLE_EQ(thesis_cut(join(grid, short_a, short_b, keep_a, keep_b)).cost, 1);
-  VoxelSet far_b(6);
+  EXPECT_DOUBLE_EQ(cut::thesis_cut(cut::join(grid, short_a, short_b, keep_a, keep_b)).cost, 1);
+  cut::VoxelSet far_b(6);
   far_b.add(4), far_b.add(5);
-  EXPECT_FALSE(thesis_cut(join(grid, short_a, far_b, keep_a, keep_b)).connected);
+  EXPECT_FALSE(cut::thesis_cut(cut::join(grid, short_a, far_b, keep_a, keep_b)).connected);
 }
 
 /// The refined cut's graph as its definition gives it, nothing contracted: every
 /// place is split in two, and only those that both models come near can be cut.
-double refined_minimum(const JointVoxels& voxels, int reach) {
-  const Grid& g = voxels.grid;
+double refined_minimum(const cut::JointVoxels& voxels, int reach) {
+  const cut::Grid& g = voxels.grid;
   const int n = int(g.count()), pieces = int(voxels.outer.size());
   std::vector<int> near(n, 0);
   for (int p = 0; p < voxels.size(); ++p) {
@@ -244,8 +244,8 @@ double refined_minimum(const JointVoxels& voxels, int reach) {
     const std::int64_t weight = shared(v) ? int(32 * (1 + 1. / (1 + depth[v]))) : kForbidden;
     graph.add_edge(2 * v, 2 * v + 1, weight, 0);
     const int p = voxels.set.node(std::size_t(v)), flags = p < 0 ? 0 : voxels.flags[p];
-    if (flags & kKeepA) graph.add_tweights(2 * v, kForbidden, 0);
-    if (flags & kKeepB) graph.add_tweights(2 * v + 1, 0, kForbidden);
+    if (flags & cut::kKeepA) graph.add_tweights(2 * v, kForbidden, 0);
+    if (flags & cut::kKeepB) graph.add_tweights(2 * v + 1, 0, kForbidden);
   }
   for_each_pair([&](int v, int u) {
     if (!shared(v) && !shared(u) && near[v] != near[u] &&
@@ -255,10 +255,10 @@ double refined_minimum(const JointVoxels& voxels, int reach) {
     graph.add_edge(2 * u + 1, 2 * v, kForbidden, 0);
   });
   for (int k = 0; k < pieces; ++k) {
-    const OuterPiece& piece = voxels.outer[k];
+    const cut::OuterPiece& piece = voxels.outer[k];
     if (piece.keep) graph.add_tweights(2 * n + k, piece.of_a ? kForbidden : 0, piece.of_a ? 0 : kForbidden);
     for (std::size_t v : piece.voxels) {
-      if (!shared(int(v)) && (voxels.flags[voxels.set.node(v)] & 3) != (piece.of_a ? kHasA : kHasB)) continue;
+      if (!shared(int(v)) && (voxels.flags[voxels.set.node(v)] & 3) != (piece.of_a ? cut::kHasA : cut::kHasB)) continue;
       graph.add_edge(2 * n + k, int(2 * v), kForbidden, 0);
       graph.add_edge(int(2 * v + 1), 2 * n + k, kForbidden, 0);
     }
@@ -269,10 +269,10 @@ double refined_minimum(const JointVoxels& voxels, int reach) {
 TEST(RefinedCut, CostsTheMinimumOfTheGraphThatIsNotContracted) {
   // Without normals no sheets are tied, and depth alone makes the weights.
   for (unsigned seed = 0; seed < 200; ++seed) {
-    const JointVoxels voxels = random_voxels(seed + 500, 8 + int(seed % 15));
+    const cut::JointVoxels voxels = random_voxels(seed + 500, 8 + int(seed % 15));
     const std::vector<Eigen::Vector3f> none(voxels.size(), Eigen::Vector3f::Zero());
     const int reach = int(seed % 3);
-    const VoxelLabels cut = refined_cut(voxels, none, none, {reach});
+    const cut::VoxelLabels cut = cut::refined_cut(voxels, none, none, {reach});
     EXPECT_DOUBLE_EQ(cut.cost, refined_minimum(voxels, reach)) << "scene " << seed << " reach " << reach;
     EXPECT_EQ(cut.connected, cut.cost > 0);
     expect_constraints_hold(voxels, cut);
@@ -282,13 +282,13 @@ TEST(RefinedCut, CostsTheMinimumOfTheGraphThatIsNotContracted) {
 TEST(RefinedCut, SeamVoxelsPartTheLabels) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::vector<Eigen::Vector3f> normal_a, normal_b;
-    const JointVoxels voxels = random_voxels(seed + 900, 10 + int(seed % 15), &normal_a, &normal_b);
-    const VoxelLabels cut = refined_cut(voxels, normal_a, normal_b, {0});
+    const cut::JointVoxels voxels = random_voxels(seed + 900, 10 + int(seed % 15), &normal_a, &normal_b);
+    const cut::VoxelLabels cut = cut::refined_cut(voxels, normal_a, normal_b, {0});
     expect_constraints_hold(voxels, cut);
     if (!cut.connected) continue;
     for (int p = 0; p < voxels.size(); ++p)
-      EXPECT_TRUE(cut.label[p] != VoxelLabels::kSeam || voxels.both(p)) << "a seam where one model is alone";
-    for_each_edge(voxels.grid, voxels.set, voxels.cells, [&](int p, int q) {
+      EXPECT_TRUE(cut.label[p] != cut::VoxelLabels::kSeam || voxels.both(p)) << "a seam where one model is alone";
+    cut::for_each_edge(voxels.grid, voxels.set, voxels.cells, [&](int p, int q) {
       if (cut.label[p] * cut.label[q] >= 0) return;
       // Sheets of one model each may touch; no other change goes without a seam.
       EXPECT_TRUE(!voxels.both(p) && !voxels.both(q) && (voxels.flags[p] & 3) != (voxels.flags[q] & 3));
@@ -299,31 +299,31 @@ TEST(RefinedCut, SeamVoxelsPartTheLabels) {
 TEST(RefinedCut, DoesNotAmputate) {
   // Two tori side by side: eq. 1-2 snip a ring around A's constraint, the refined
   // cut keeps A up to where the models meet.
-  Part a{torus({-0.75, 0, 0}, 0.6, 0.2), {}}, b{torus({0.75, 0, 0}, 0.6, 0.2), {}};
+  cut::Part a{torus({-0.75, 0, 0}, 0.6, 0.2), {}}, b{torus({0.75, 0, 0}, 0.6, 0.2), {}};
   a.keep = faces_where(a.mesh, [](const Vec3& c) { return c.x() < -1.4; });
   b.keep = faces_where(b.mesh, [](const Vec3& c) { return c.x() > 1.4; });
-  Model ma = make_model(a, "A"), mb = make_model(b, "B");
-  const JointVoxels voxels = joint_voxels(ma, mb, transition_volume(ma, mb, Box()), 64, 1);
-  const auto na = voxel_normals(ma.prepared.mesh, voxels), nb = voxel_normals(mb.prepared.mesh, voxels);
-  const VoxelLabels cut = refined_cut(voxels, na, nb, {});
+  cut::Model ma = cut::make_model(a, "A"), mb = cut::make_model(b, "B");
+  const cut::JointVoxels voxels = cut::joint_voxels(ma, mb, cut::transition_volume(ma, mb, Box()), 64, 1);
+  const auto na = cut::voxel_normals(ma.prepared.mesh, voxels), nb = cut::voxel_normals(mb.prepared.mesh, voxels);
+  const cut::VoxelLabels cut = cut::refined_cut(voxels, na, nb, {});
   ASSERT_TRUE(cut.connected);
   long kept = 0, all = 0;
   for (int p = 0; p < voxels.size(); ++p)
-    if ((voxels.flags[p] & 3) == kHasA) ++all, kept += cut.label[p] == VoxelLabels::kA;
+    if ((voxels.flags[p] & 3) == cut::kHasA) ++all, kept += cut.label[p] == cut::VoxelLabels::kA;
   EXPECT_GT(double(kept), 0.8 * double(all));
 }
 
 TEST(LabelIsolated, TakesTheNearestDecidedLabel) {
-  Grid grid;
+  cut::Grid grid;
   grid.dims = {9, 1, 1};
-  VoxelSet a(9), b(9), none(9);
+  cut::VoxelSet a(9), b(9), none(9);
   for (const int i : {0, 2, 5, 8}) a.add(std::size_t(i));
-  const JointVoxels voxels = join(grid, a, b, none, none);
-  std::vector<std::int8_t> label{VoxelLabels::kA, 0, 0, VoxelLabels::kB};
-  label_isolated(voxels, {-1, 0, 1, -1}, 2, label);
+  const cut::JointVoxels voxels = cut::join(grid, a, b, none, none);
+  std::vector<std::int8_t> label{cut::VoxelLabels::kA, 0, 0, cut::VoxelLabels::kB};
+  cut::label_isolated(voxels, {-1, 0, 1, -1}, 2, label);
   EXPECT_EQ(label, (std::vector<std::int8_t>{1, 1, -1, -1}));
   std::vector<std::int8_t> untouched{0, 0, 0, 0};
-  label_isolated(voxels, {0, 0, 0, 0}, 1, untouched);  // nobody to ask
+  cut::label_isolated(voxels, {0, 0, 0, 0}, 1, untouched);  // nobody to ask
   EXPECT_EQ(untouched, (std::vector<std::int8_t>{0, 0, 0, 0}));
 }
 

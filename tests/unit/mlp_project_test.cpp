@@ -23,9 +23,9 @@ class MlpProjectFile : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  MlpProject read(const std::string& text) const {
+  io::MlpProject read(const std::string& text) const {
     std::ofstream(path("p.mlp"), std::ios::binary) << text;
-    return read_mlp(path("p.mlp"));
+    return io::read_mlp(path("p.mlp"));
   }
   std::string sentence(const std::string& text) const {
     try {
@@ -64,14 +64,14 @@ const char kMeshLabs[] = R"(<!DOCTYPE MeshLabDocument>
 )";
 
 TEST_F(MlpProjectFile, ReadsWhatMeshLabWrites) {
-  const MlpProject p = read(kMeshLabs);
+  const io::MlpProject p = read(kMeshLabs);
   ASSERT_EQ(p.meshes.size(), 2u);
   EXPECT_EQ(p.meshes[0].label, "a & b");
   EXPECT_EQ(p.meshes[0].file, path("models/a <1>.ply"));
   EXPECT_EQ((p.meshes[0].matrix * Eigen::Vector4d(1, 2, 3, 1)).head<3>(), Vec3(6, 3, 9));
   EXPECT_TRUE(p.meshes[1].matrix.isIdentity());
   ASSERT_EQ(p.rasters.size(), 1u);
-  const MlpRaster& r = p.rasters[0];
+  const io::MlpRaster& r = p.rasters[0];
   EXPECT_EQ(r.label, "view 1");
   EXPECT_TRUE(r.camera.given);
   EXPECT_EQ(r.camera.translation, Vec3(-1, -2, -3));
@@ -80,17 +80,17 @@ TEST_F(MlpProjectFile, ReadsWhatMeshLabWrites) {
   EXPECT_EQ(r.camera.pixel_mm, Eigen::Vector2d(0.5, 0.25));
   EXPECT_EQ(r.camera.type, 1);
   EXPECT_EQ(r.planes.size(), 2u);
-  EXPECT_EQ(r.file_of(plane::kDepth), path("v1.tif"));
-  EXPECT_EQ(r.file_of(plane::kMask), "");
+  EXPECT_EQ(r.file_of(io::plane::kDepth), path("v1.tif"));
+  EXPECT_EQ(r.file_of(io::plane::kMask), "");
 }
 
 TEST_F(MlpProjectFile, ReadsBackWhatItWrites) {
-  MlpProject p = read(kMeshLabs);
+  io::MlpProject p = read(kMeshLabs);
   p.meshes[0].matrix(0, 3) = 1.0 / 3;
   p.meshes[1].label = "\"quoted\" <&>";
   p.meshes[1].file = fs::absolute(path("sub/ä.ply")).string();
-  write_mlp(p, path("q.mlp"));
-  const MlpProject q = read_mlp(path("q.mlp"));
+  io::write_mlp(p, path("q.mlp"));
+  const io::MlpProject q = io::read_mlp(path("q.mlp"));
   ASSERT_EQ(q.meshes.size(), 2u);
   EXPECT_EQ(q.meshes[0].matrix, p.meshes[0].matrix);
   EXPECT_EQ(q.meshes[1].label, p.meshes[1].label);
@@ -104,9 +104,9 @@ TEST_F(MlpProjectFile, ReadsBackWhatItWrites) {
 }
 
 TEST_F(MlpProjectFile, NamesFilesRelativeToItsFolder) {
-  MlpProject p;
+  io::MlpProject p;
   p.meshes.push_back({"m", path("models/m.ply")});
-  write_mlp(p, path("p.mlp"));
+  io::write_mlp(p, path("p.mlp"));
   std::ifstream file(path("p.mlp"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("filename=\"models/m.ply\""), std::string::npos) << text;
@@ -122,9 +122,9 @@ TEST_F(MlpProjectFile, SaysWhatIsWrong) {
   EXPECT_NE(sentence(head + "1 0 0" + tail).find("3 numbers"), std::string::npos);
   EXPECT_NE(sentence(head + "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 nan" + tail), "");
   EXPECT_NE(sentence(head + "AAAAAA==" + tail), "");
-  EXPECT_THROW(read_mlp(path("missing.mlp")), UserError);
-  EXPECT_THROW(read_mlp(folder_.string()), UserError);
-  EXPECT_THROW(write_mlp({}, path("no/such/folder/p.mlp")), UserError);
+  EXPECT_THROW(io::read_mlp(path("missing.mlp")), UserError);
+  EXPECT_THROW(io::read_mlp(folder_.string()), UserError);
+  EXPECT_THROW(io::write_mlp({}, path("no/such/folder/p.mlp")), UserError);
 }
 
 // Entities that expand to gigabytes must end as an error, soon.

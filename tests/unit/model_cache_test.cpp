@@ -22,9 +22,9 @@ std::string contents(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-bool same(const ModelRaster& a, const ModelRaster& b) {
-  const ModelCache::Key key{1, 2, 3, 4, a.levels.size()};
-  return ModelCache::encode(a, key) == ModelCache::encode(b, key);
+bool same(const search::ModelRaster& a, const search::ModelRaster& b) {
+  const search::ModelCache::Key key{1, 2, 3, 4, a.levels.size()};
+  return search::ModelCache::encode(a, key) == search::ModelCache::encode(b, key);
 }
 
 class Cache : public ::testing::Test {
@@ -40,17 +40,18 @@ class Cache : public ::testing::Test {
     fs::remove_all(folder_);
   }
   void put(const std::string& name, unsigned seed) const {
-    write_mesh(test::noisy_sphere(Vec3(1, 2, 3), 2, 3, 0.3, seed), (folder_ / name).string());
+    io::write_mesh(test::noisy_sphere(Vec3(1, 2, 3), 2, 3, 0.3, seed), (folder_ / name).string());
   }
   /// A fill by a new run; how many it had to make.
   int fill(int levels = 2, bool files = true, int kept = 100) {
-    database_ = std::make_unique<ModelDatabase>(folder_.string(), progress_);
-    const ModelDatabase& database = *database_;
-    cache_ = std::make_unique<ModelCache>(database, ModelCache::Options{levels, files, 2, kept});
+    database_ = std::make_unique<io::ModelDatabase>(folder_.string(), progress_);
+    const io::ModelDatabase& database = *database_;
+    cache_ = std::make_unique<search::ModelCache>(database, search::ModelCache::Options{levels, files, 2, kept});
     cache_->fill(progress_);
     for (int i = 0; i < database.size(); ++i)
       if (cache_->raster(i)) {
-        EXPECT_TRUE(same(*cache_->raster(i), rasterize_model(database.load(i), int(cache_->raster(i)->levels.size()))));
+        EXPECT_TRUE(
+            same(*cache_->raster(i), search::rasterize_model(database.load(i), int(cache_->raster(i)->levels.size()))));
       }
     return cache_->made();
   }
@@ -66,10 +67,10 @@ class Cache : public ::testing::Test {
 
   bool fills_undisturbed() try {
     Progress silent;
-    const ModelDatabase database(folder_.string(), silent);
+    const io::ModelDatabase database(folder_.string(), silent);
     bool good = true;
     for (int k = 0; k < 3; ++k) {
-      ModelCache cache(database, {2, true, 1});
+      search::ModelCache cache(database, {2, true, 1});
       cache.fill(silent);
       for (int m = 0; m < 3; ++m) good = good && cache.raster(m);
       std::error_code error;
@@ -83,8 +84,8 @@ class Cache : public ::testing::Test {
   fs::path folder_;
   std::vector<std::string> log_;
   Progress progress_{{}, [this](const std::string& line) { log_.push_back(line); }};
-  std::unique_ptr<ModelDatabase> database_;
-  std::unique_ptr<ModelCache> cache_;
+  std::unique_ptr<io::ModelDatabase> database_;
+  std::unique_ptr<search::ModelCache> cache_;
 };
 
 TEST_F(Cache, IsMadeOnce) {
@@ -132,24 +133,24 @@ TEST_F(Cache, NeverTrustsADamagedFile) {
 
 TEST_F(Cache, ChecksWhatAForgedFileHolds) {
   fill();
-  const ModelRaster& good = *cache_->raster(0);
-  const ModelCache::Key key{1, 2, 3, 4, 2};
-  ASSERT_TRUE(ModelCache::decode(ModelCache::encode(good, key), key));
+  const search::ModelRaster& good = *cache_->raster(0);
+  const search::ModelCache::Key key{1, 2, 3, 4, 2};
+  ASSERT_TRUE(search::ModelCache::decode(search::ModelCache::encode(good, key), key));
   const auto refused = [&](const auto& change) {
-    ModelRaster r = good;
+    search::ModelRaster r = good;
     change(r);
-    return !ModelCache::decode(ModelCache::encode(r, key), key);
+    return !search::ModelCache::decode(search::ModelCache::encode(r, key), key);
   };
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.size = 0; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.origin.x() = NAN; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.samples.clear(); }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.samples[5].at.y() = INFINITY; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].nearest[7] = std::uint16_t(r.samples.size()); }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[0].nearest[7] = RasterLevel::kFar; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims[2] += 1; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims = {-1, -1, 1}; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels[1].dims = {1000000, 1000000, 1000000}; }));
-  EXPECT_TRUE(refused([](ModelRaster& r) { r.levels.pop_back(); }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.size = 0; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.origin.x() = NAN; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.samples.clear(); }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.samples[5].at.y() = INFINITY; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].nearest[7] = std::uint16_t(r.samples.size()); }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[0].nearest[7] = search::RasterLevel::kFar; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].dims[2] += 1; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].dims = {-1, -1, 1}; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].dims = {1000000, 1000000, 1000000}; }));
+  EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels.pop_back(); }));
 }
 
 TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
@@ -188,11 +189,11 @@ TEST_F(Cache, KeepsOnlyCoarseLevelsOfManyModels) {
   fill(3, true, 2);
   EXPECT_EQ(cache_->raster(1)->levels.size(), 2u);
   cache_->complete(1);
-  const ModelDatabase& database = *database_;
-  EXPECT_TRUE(same(*cache_->raster(1), rasterize_model(database.load(1), 3)));
+  const io::ModelDatabase& database = *database_;
+  EXPECT_TRUE(same(*cache_->raster(1), search::rasterize_model(database.load(1), 3)));
   fs::remove_all(folder_ / ".model-cache");
   cache_->complete(2);
-  EXPECT_TRUE(same(*cache_->raster(2), rasterize_model(database.load(2), 3)));
+  EXPECT_TRUE(same(*cache_->raster(2), search::rasterize_model(database.load(2), 3)));
 }
 
 }  // namespace

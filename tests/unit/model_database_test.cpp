@@ -31,7 +31,7 @@ class ModelDatabaseTest : public ::testing::Test {
   void file(const std::string& name, const std::string& bytes) const { std::ofstream(path(name)) << bytes; }
   std::string sentence(const std::string& database) {
     try {
-      ModelDatabase(database, progress_);
+      io::ModelDatabase(database, progress_);
     } catch (const UserError& e) {
       return e.what();
     }
@@ -46,10 +46,10 @@ class ModelDatabaseTest : public ::testing::Test {
 TEST_F(ModelDatabaseTest, ListsAFolderInNaturalOrder) {
   const Mesh m = test::box({0, 0, 0}, {1, 1, 1});
   for (const char* name : {"head_10.ply", "head_2.off", "Head_1.obj", "x.ply", "head_010.off"})
-    write_mesh(m, path(name));
+    io::write_mesh(m, path(name));
   file("notes.txt", "no model");
   fs::create_directories(path("folder.ply"));
-  const ModelDatabase d(folder_.string(), progress_);
+  const io::ModelDatabase d(folder_.string(), progress_);
   std::vector<std::string> names;
   for (int i = 0; i < d.size(); ++i) names.push_back(d.name(i));
   EXPECT_EQ(names, (std::vector<std::string>{"Head_1.obj", "head_2.off", "head_010.off", "head_10.ply", "x.ply"}));
@@ -61,28 +61,28 @@ TEST_F(ModelDatabaseTest, NaturalOrderIsAStrictOrder) {
   const std::vector<std::string> sorted{"",     "1",   "01", "2",  "10",  "a", "A",   "a1",
                                         "a01b", "a1c", "a2", "a9", "a10", "b", "b 2", "b 10"};
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    EXPECT_FALSE(natural_less(sorted[i], sorted[i]));
+    EXPECT_FALSE(io::natural_less(sorted[i], sorted[i]));
     for (std::size_t j = 0; j < sorted.size(); ++j)
       if (i != j) {
-        EXPECT_NE(natural_less(sorted[i], sorted[j]), natural_less(sorted[j], sorted[i]));
+        EXPECT_NE(io::natural_less(sorted[i], sorted[j]), io::natural_less(sorted[j], sorted[i]));
       }
   }
-  EXPECT_TRUE(natural_less("head_2", "head_10"));
-  EXPECT_TRUE(natural_less("a99999999999999999999998", "a99999999999999999999999"));
+  EXPECT_TRUE(io::natural_less("head_2", "head_10"));
+  EXPECT_TRUE(io::natural_less("a99999999999999999999998", "a99999999999999999999999"));
 }
 
 TEST_F(ModelDatabaseTest, PlacesTheModelsOfAProjectByTheirMatrices) {
   fs::create_directories(path("models"));
   const Mesh box = test::box({0, 0, 0}, {1, 2, 3});
-  write_mesh(box, path("models/a.ply"));
-  MlpProject p;
+  io::write_mesh(box, path("models/a.ply"));
+  io::MlpProject p;
   p.meshes.resize(3);
-  for (MlpMesh& m : p.meshes) m.label = "box", m.file = path("models/a.ply");
+  for (io::MlpMesh& m : p.meshes) m.label = "box", m.file = path("models/a.ply");
   p.meshes[1].matrix.topLeftCorner<3, 3>() *= -2;  // mirrored
   p.meshes[1].matrix(0, 3) = 10;
   p.meshes[2].file = path("models/lost.ply");
-  write_mlp(p, path("p.mlp"));
-  const ModelDatabase d(path("p.mlp"), progress_);
+  io::write_mlp(p, path("p.mlp"));
+  const io::ModelDatabase d(path("p.mlp"), progress_);
   ASSERT_EQ(d.size(), 2);
   EXPECT_EQ(d.name(0), "box");
   EXPECT_EQ(d.name(1), "box (2)");
@@ -105,7 +105,7 @@ TEST_F(ModelDatabaseTest, NamesAndSkipsWhatCannotBeUsed) {
   file("nan.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n");
   file("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
   file("stray.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\nnan nan nan\n3 0 1 2\n");
-  const ModelDatabase d(folder_.string(), progress_);
+  const io::ModelDatabase d(folder_.string(), progress_);
   ASSERT_EQ(d.size(), 7);
   for (int i = 0; i < 6; ++i) {
     EXPECT_FALSE(d.load_or_skip(i, progress_)) << d.name(i);
@@ -115,12 +115,12 @@ TEST_F(ModelDatabaseTest, NamesAndSkipsWhatCannotBeUsed) {
   }
   const auto stray = d.load_or_skip(6, progress_);
   ASSERT_TRUE(stray);
-  EXPECT_EQ(check(*stray).nonfinite_vertices + check(*stray).unused_vertices, 0);
+  EXPECT_EQ(mesh::check(*stray).nonfinite_vertices + mesh::check(*stray).unused_vertices, 0);
 }
 
 TEST_F(ModelDatabaseTest, AMeshFileStandsForItsFolder) {
   for (const char* name : {"a.off", "b.off"}) file(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const ModelDatabase d(path("b.off"), progress_);
+  const io::ModelDatabase d(path("b.off"), progress_);
   EXPECT_EQ(d.size(), 2);
   EXPECT_TRUE(std::filesystem::equivalent(d.path(), folder_));
 }
@@ -131,7 +131,7 @@ TEST_F(ModelDatabaseTest, AnEmptyDatabaseIsASentence) {
   EXPECT_NE(sentence(""), "");
   file("a.txt", "x");
   EXPECT_NE(sentence(path("a.txt")).find("neither a folder nor"), std::string::npos);
-  write_mlp({}, path("p.mlp"));
+  io::write_mlp({}, path("p.mlp"));
   EXPECT_NE(sentence(path("p.mlp")).find("add models"), std::string::npos);
 }
 

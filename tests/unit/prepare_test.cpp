@@ -31,7 +31,7 @@ double signed_volume(const Mesh& mesh) {
 
 TEST(Prepare, LeavesACleanMeshAsItIs) {
   const Mesh mesh = torus();
-  const Prepared p = prepare(mesh);
+  const mesh::Prepared p = mesh::prepare(mesh);
   EXPECT_EQ(p.mesh.vertices, mesh.vertices);
   EXPECT_EQ(p.mesh.faces, mesh.faces);
   EXPECT_EQ(p.components, 1);
@@ -41,11 +41,11 @@ TEST(Prepare, LeavesACleanMeshAsItIs) {
 
 TEST(Prepare, WeldsASoupIntoAClosedSurface) {
   const Mesh mesh = sphere({1, 2, 3}, 2, 2);
-  const Prepared p = prepare(soup(mesh));
+  const mesh::Prepared p = mesh::prepare(soup(mesh));
   EXPECT_EQ(p.mesh.vertex_count(), mesh.vertex_count());
   EXPECT_EQ(p.welded_vertices, 3 * mesh.face_count() - mesh.vertex_count());
-  const MeshCheck c = check(p.mesh);
-  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << to_string(c);
+  const mesh::MeshCheck c = mesh::check(p.mesh);
+  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << mesh::to_string(c);
   EXPECT_EQ(p.components, 1);
 }
 
@@ -63,7 +63,7 @@ TEST(Prepare, DropsWhatIsNoTriangleAndKeepsZeroArea) {
   mesh.faces.push_back({mesh.faces[0][1], mesh.faces[0][2], mesh.faces[0][0]});
   mesh.faces.push_back({mesh.faces[1][1], mesh.faces[1][0], mesh.faces[1][2]});  // turned over: still the same face
   mesh.faces.push_back({0, 1, v + 3});
-  const Prepared p = prepare(mesh);
+  const mesh::Prepared p = mesh::prepare(mesh);
   EXPECT_EQ(p.dropped_faces, 6);
   EXPECT_EQ(p.mesh.face_count(), faces + 1);
   EXPECT_EQ(p.source_face.back(), mesh.face_count() - 1);
@@ -72,12 +72,12 @@ TEST(Prepare, DropsWhatIsNoTriangleAndKeepsZeroArea) {
 }
 
 TEST(Prepare, NothingUsableGivesNoFaces) {
-  EXPECT_EQ(prepare(Mesh()).mesh.face_count(), 0);
+  EXPECT_EQ(mesh::prepare(Mesh()).mesh.face_count(), 0);
   Mesh points;
   points.vertices = {{0, 0, 0}, {1, 0, 0}};
-  EXPECT_EQ(prepare(points).components, 0);
+  EXPECT_EQ(mesh::prepare(points).components, 0);
   points.faces = {{0, 1, 1}};
-  EXPECT_EQ(prepare(points).mesh.face_count(), 0);
+  EXPECT_EQ(mesh::prepare(points).mesh.face_count(), 0);
 }
 
 TEST(Prepare, TurnsTheSmallerShareOver) {
@@ -87,9 +87,9 @@ TEST(Prepare, TurnsTheSmallerShareOver) {
   int turned = 0;
   for (Triangle& f : mixed.faces)
     if (random.uniform(0, 1) < 0.3) std::swap(f[0], f[1]), ++turned;
-  const Prepared p = prepare(mixed);
+  const mesh::Prepared p = mesh::prepare(mixed);
   EXPECT_EQ(p.reversed_faces, turned);
-  EXPECT_TRUE(check(p.mesh).oriented());
+  EXPECT_TRUE(mesh::check(p.mesh).oriented());
   EXPECT_NEAR(signed_volume(p.mesh), signed_volume(mesh), 1e-9);
 }
 
@@ -102,7 +102,7 @@ TEST(Prepare, TextureCornersFollowATurnedFace) {
     mesh.wedges.back().texture = 0;
     for (int k = 0; k < 3; ++k) mesh.wedges.back().uv[k] = mesh.corner(f, k).head<2>().cast<float>();
   }
-  const Prepared p = prepare(mesh);
+  const mesh::Prepared p = mesh::prepare(mesh);
   EXPECT_GT(p.reversed_faces, 0);
   for (int f = 0; f < p.mesh.face_count(); ++f)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(p.mesh.wedges[f].uv[k], (p.mesh.corner(f, k).head<2>().cast<float>()));
@@ -111,7 +111,7 @@ TEST(Prepare, TextureCornersFollowATurnedFace) {
 TEST(Prepare, NumbersComponentsAndSaysWhichAreClosed) {
   Mesh open = sphere({5, 0, 0});
   open.faces.pop_back();
-  const Prepared p = prepare(together({sphere(), open, box({9, 0, 0}, {10, 1, 1})}));
+  const mesh::Prepared p = mesh::prepare(together({sphere(), open, box({9, 0, 0}, {10, 1, 1})}));
   ASSERT_EQ(p.components, 3);
   EXPECT_TRUE(p.closed[0]);
   EXPECT_FALSE(p.closed[1]);
@@ -123,7 +123,7 @@ TEST(Prepare, ThreeFacesAtAnEdgeAreOneComponent) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
   mesh.faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
-  const Prepared p = prepare(mesh);
+  const mesh::Prepared p = mesh::prepare(mesh);
   EXPECT_EQ(p.components, 1);
   EXPECT_FALSE(p.closed[0]);
   EXPECT_EQ(p.mesh.face_count(), 3);
@@ -143,7 +143,7 @@ TEST(Prepare, AMoebiusStripComesBackWhole) {
     strip.faces.push_back({a, b, c});
     strip.faces.push_back({c, b, d});
   }
-  const Prepared p = prepare(strip);
+  const mesh::Prepared p = mesh::prepare(strip);
   EXPECT_EQ(p.mesh.face_count(), strip.face_count());
   EXPECT_EQ(p.components, 1);
 }

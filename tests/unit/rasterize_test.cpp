@@ -17,8 +17,9 @@ namespace {
 
 using namespace parts::test;
 
-Camera facing(const Mesh& mesh, int width, int height, double yaw = 0) {
-  return orthographic_camera(view_rotation({yaw, 0}, {0, 1, 0}, {0, 0, 1}), mesh.bounds(), width, height);
+render::Camera facing(const Mesh& mesh, int width, int height, double yaw = 0) {
+  return render::orthographic_camera(render::view_rotation({yaw, 0}, {0, 1, 0}, {0, 0, 1}), mesh.bounds(), width,
+                                     height);
 }
 
 bool same(const cv::Mat& a, const cv::Mat& b) {  // bit for bit, NaN too
@@ -28,9 +29,9 @@ bool same(const cv::Mat& a, const cv::Mat& b) {  // bit for bit, NaN too
 TEST(Rasterize, DepthsOfASphere) {
   const Mesh mesh = sphere({3, -2, 5}, 2, 5);
   for (const bool pinhole : {false, true}) {
-    Camera camera = facing(mesh, 150, 200, 30);
+    render::Camera camera = facing(mesh, 150, 200, 30);
     if (pinhole) camera = pinhole_camera(camera.rotation, mesh.bounds(), 150, 200, 250);
-    const Rendering r = render(mesh, {}, camera, {});
+    const render::Rendering r = render::render(mesh, {}, camera, {});
     int covered = 0;
     for (int y = 0; y < 200; ++y)
       for (int x = 0; x < 150; ++x) {
@@ -67,12 +68,12 @@ TEST(Rasterize, CoverageHasNoGapsAndNoOverlaps) {
       mesh.faces.push_back({a, b, c});
       mesh.faces.push_back({a, c, d});
     }
-  Camera camera;
+  render::Camera camera;
   camera.width = camera.height = 80;
   camera.scale = 2;
   camera.center = {0, 80};
   camera.eye = {0, 0, 10};
-  const Rendering r = render(mesh, {}, camera, {});
+  const render::Rendering r = render::render(mesh, {}, camera, {});
   EXPECT_EQ(cv::countNonZero(r.mask), 80 * 80);
   // Each pixel once: no second layer anywhere.
   EXPECT_TRUE(same(r.depth, r.back_depth));
@@ -82,13 +83,13 @@ TEST(Rasterize, SameForAnyThreads) {
   Mesh mesh = noisy_sphere({0, 0, 0}, 1, 5, 0.5, 3);
   for (const Vec3& p : mesh.vertices)
     mesh.vertex_color.push_back({std::uint8_t(128 + 100 * p.x()), 90, std::uint8_t(128 + 100 * p.y()), 255});
-  RenderOptions options;
+  render::RenderOptions options;
   options.threads = 1;
-  const Camera camera = facing(mesh, 151, 203);
-  const Rendering one = render(mesh, {}, camera, options);
+  const render::Camera camera = facing(mesh, 151, 203);
+  const render::Rendering one = render::render(mesh, {}, camera, options);
   for (int threads : {2, 3, 8, 500}) {
     options.threads = threads;
-    const Rendering many = render(mesh, {}, camera, options);
+    const render::Rendering many = render::render(mesh, {}, camera, options);
     EXPECT_TRUE(same(one.image, many.image) && same(one.depth, many.depth) && same(one.face, many.face));
     EXPECT_TRUE(same(one.back_depth, many.back_depth));
   }
@@ -101,8 +102,8 @@ Mesh square() {
   return mesh;
 }
 
-RenderOptions unlit() {
-  RenderOptions options;
+render::RenderOptions unlit() {
+  render::RenderOptions options;
   options.ambient = 1;
   return options;
 }
@@ -119,13 +120,13 @@ TEST(Rasterize, TextureStandsUpright) {
   mesh.wedges = {{{Eigen::Vector2f(0, 0), Eigen::Vector2f(1, 0), Eigen::Vector2f(1, 1)}, 0},
                  {{Eigen::Vector2f(0, 0), Eigen::Vector2f(1, 1), Eigen::Vector2f(0, 1)}, 0}};
   for (int size : {8, 64, 200}) {  // smaller, as large and larger than the texture
-    const Rendering r = render(mesh, load_textures(mesh), facing(mesh, size, size), unlit());
+    const render::Rendering r = render::render(mesh, render::load_textures(mesh), facing(mesh, size, size), unlit());
     EXPECT_EQ(r.image.at<cv::Vec3b>(size / 4, size / 4), cv::Vec3b(255, 0, 0));
     EXPECT_EQ(r.image.at<cv::Vec3b>(size / 4, size * 3 / 4), cv::Vec3b(0, 255, 0));
     EXPECT_EQ(r.image.at<cv::Vec3b>(size * 3 / 4, size / 4), cv::Vec3b(0, 0, 255));
   }
   mesh.textures = {"no such file.png"};
-  const Rendering plain = render(mesh, load_textures(mesh), facing(mesh, 20, 20), unlit());
+  const render::Rendering plain = render::render(mesh, render::load_textures(mesh), facing(mesh, 20, 20), unlit());
   EXPECT_EQ(plain.image.at<cv::Vec3b>(10, 10), cv::Vec3b(204, 200, 200));
   std::filesystem::remove(file);
 }
@@ -133,27 +134,27 @@ TEST(Rasterize, TextureStandsUpright) {
 TEST(Rasterize, ColorsOfVerticesAndFaces) {
   Mesh mesh = square();
   mesh.face_color = {{10, 20, 30, 255}, {40, 50, 60, 255}};
-  Rendering r = render(mesh, {}, facing(mesh, 40, 40), unlit());
+  render::Rendering r = render::render(mesh, {}, facing(mesh, 40, 40), unlit());
   EXPECT_EQ(r.image.at<cv::Vec3b>(30, 25), cv::Vec3b(30, 20, 10));
   EXPECT_EQ(r.image.at<cv::Vec3b>(10, 15), cv::Vec3b(60, 50, 40));
   mesh.vertex_color = {{0, 0, 0, 255}, {200, 0, 0, 255}, {200, 0, 0, 255}, {0, 0, 0, 255}};
-  r = render(mesh, {}, facing(mesh, 40, 40), unlit());
+  r = render::render(mesh, {}, facing(mesh, 40, 40), unlit());
   EXPECT_NEAR(r.image.at<cv::Vec3b>(20, 20)[2], 100, 5);
-  RenderOptions options = unlit();
+  render::RenderOptions options = unlit();
   options.colors = false;
   options.base = {1, 2, 3, 255};
-  r = render(mesh, {}, facing(mesh, 40, 40), options);
+  r = render::render(mesh, {}, facing(mesh, 40, 40), options);
   EXPECT_EQ(r.image.at<cv::Vec3b>(20, 20), cv::Vec3b(3, 2, 1));
 }
 
 TEST(Rasterize, LightAndBackFaces) {
   const Mesh mesh = square();
-  RenderOptions options;
+  render::RenderOptions options;
   options.light = {0, 0, 4};
   options.ambient = 0.25;
   options.base = {200, 200, 200, 255};
   const auto middle = [&](double yaw) {
-    return render(mesh, {}, facing(mesh, 20, 20, yaw), options).image.at<cv::Vec3b>(10, 10);
+    return render::render(mesh, {}, facing(mesh, 20, 20, yaw), options).image.at<cv::Vec3b>(10, 10);
   };
   EXPECT_EQ(middle(0), cv::Vec3b(200, 200, 200));
   EXPECT_NEAR(middle(60)[0], 200 * (0.25 + 0.75 * 0.5), 1);
@@ -167,10 +168,10 @@ TEST(Rasterize, LightAndBackFaces) {
 
 TEST(Rasterize, EdgesAreDrawn) {
   const Mesh mesh = square();
-  RenderOptions options = unlit();
+  render::RenderOptions options = unlit();
   options.edge_width = 2;
-  const Camera camera = facing(mesh, 100, 100);
-  const Rendering r = render(mesh, {}, camera, options);
+  const render::Camera camera = facing(mesh, 100, 100);
+  const render::Rendering r = render::render(mesh, {}, camera, options);
   EXPECT_LT(r.image.at<cv::Vec3b>(50, 50)[0], 120);  // the diagonal
   EXPECT_EQ(r.image.at<cv::Vec3b>(30, 60)[0], 204);
 }
@@ -179,7 +180,7 @@ TEST(Rasterize, EqualDepthsGoToTheLowerFace) {
   Mesh mesh = square();
   mesh.faces.push_back(mesh.faces[0]);
   mesh.faces.push_back(mesh.faces[1]);
-  const Rendering r = render(mesh, {}, facing(mesh, 30, 30), {});
+  const render::Rendering r = render::render(mesh, {}, facing(mesh, 30, 30), {});
   double most = 0;
   cv::minMaxLoc(r.face, nullptr, &most);
   EXPECT_EQ(most, 1);
@@ -190,19 +191,19 @@ TEST(Rasterize, NastyInputs) {
   Mesh mesh = square();
   mesh.vertices.insert(mesh.vertices.end(), {{nan, 0, 0}, {0, inf, 0}, {1e300, 0, 0}, {0, 0, 1e6}, {0, 0, -1e6}});
   for (int v = 4; v < 9; ++v) mesh.faces.push_back({0, 1, v}), mesh.faces.push_back({v, v, v});
-  Camera camera = facing(square(), 30, 30);
-  EXPECT_EQ(render(mesh, {}, camera, {}).image.at<cv::Vec3b>(2, 2)[0],
-            render(square(), {}, camera, {}).image.at<cv::Vec3b>(2, 2)[0]);
+  render::Camera camera = facing(square(), 30, 30);
+  EXPECT_EQ(render::render(mesh, {}, camera, {}).image.at<cv::Vec3b>(2, 2)[0],
+            render::render(square(), {}, camera, {}).image.at<cv::Vec3b>(2, 2)[0]);
   camera = pinhole_camera(camera.rotation, square().bounds(), 30, 30, 40);
-  render(mesh, {}, camera, {});  // a corner behind the eye
-  camera.eye = {0, 0, 0};        // in the plane itself
-  render(mesh, {}, camera, {});
-  EXPECT_EQ(cv::countNonZero(render({}, {}, camera, {}).mask), 0);
+  render::render(mesh, {}, camera, {});  // a corner behind the eye
+  camera.eye = {0, 0, 0};                // in the plane itself
+  render::render(mesh, {}, camera, {});
+  EXPECT_EQ(cv::countNonZero(render::render({}, {}, camera, {}).mask), 0);
   camera.width = 0;
-  EXPECT_TRUE(render(mesh, {}, camera, {}).image.empty());
+  EXPECT_TRUE(render::render(mesh, {}, camera, {}).image.empty());
   mesh.wedges.assign(mesh.faces.size(), {});
   for (Wedges& w : mesh.wedges) w.texture = 7, w.uv[0] = {float(nan), 0};
-  render(mesh, {}, facing(square(), 30, 30), {});
+  render::render(mesh, {}, facing(square(), 30, 30), {});
 }
 
 }  // namespace

@@ -48,11 +48,11 @@ class Search : public ::testing::Test {
   void add(unsigned seed, double scale = 1) {
     Mesh m = bust(seed).mesh;
     for (Vec3& v : m.vertices) v *= scale;
-    write_mesh(m, (folder_ / ("bust_" + std::to_string(seed) + ".off")).string());
+    io::write_mesh(m, (folder_ / ("bust_" + std::to_string(seed) + ".off")).string());
   }
-  std::vector<Candidate> find(const SearchQuery& query, const SearchOptions& options = {}) {
-    const ModelDatabase database(folder_.string(), progress_);
-    return find_similar(query, database, options, progress_);
+  std::vector<search::Candidate> find(const search::SearchQuery& query, const search::SearchOptions& options = {}) {
+    const io::ModelDatabase database(folder_.string(), progress_);
+    return search::find_similar(query, database, options, progress_);
   }
 
   fs::path folder_;
@@ -61,8 +61,8 @@ class Search : public ::testing::Test {
 };
 
 /// Bust 1 without its nose, moved.
-SearchQuery noseless(const Eigen::Affine3d& motion) {
-  SearchQuery q;
+search::SearchQuery noseless(const Eigen::Affine3d& motion) {
+  search::SearchQuery q;
   q.mesh = test::moved(test::without_ball(bust(1).mesh, bust(1).nose, 0.16), motion);
   const double scale = motion.linear().col(0).norm();
   q.region =
@@ -76,7 +76,7 @@ Eigen::Affine3d turned_and_scaled(double scale) {
   return m;
 }
 
-void expect_nose_to_nose(const Candidate& c, unsigned seed, const Eigen::Affine3d& motion, double unit = 1) {
+void expect_nose_to_nose(const search::Candidate& c, unsigned seed, const Eigen::Affine3d& motion, double unit = 1) {
   const double scale = motion.linear().col(0).norm();
   EXPECT_LT((c.placement * (unit * bust(seed).nose) - motion * bust(1).nose).norm(), 0.08 * scale) << "bust " << seed;
   const Eigen::Matrix3d l = c.placement.linear();
@@ -88,12 +88,12 @@ void expect_nose_to_nose(const Candidate& c, unsigned seed, const Eigen::Affine3
 TEST_F(Search, LaysNoseOnNose) {
   for (unsigned seed : {2u, 3u, 4u, 5u}) add(seed);
   const Eigen::Affine3d motion = turned_and_scaled(1.13);
-  SearchOptions options;
+  search::SearchOptions options;
   options.candidates = 4;
-  const std::vector<Candidate> found = find(noseless(motion), options);
+  const std::vector<search::Candidate> found = find(noseless(motion), options);
   ASSERT_EQ(found.size(), 4u);
   std::set<int> models;
-  for (const Candidate& c : found) {
+  for (const search::Candidate& c : found) {
     expect_nose_to_nose(c, unsigned(c.model + 2), motion);
     models.insert(c.model);
   }
@@ -104,7 +104,7 @@ TEST_F(Search, LaysNoseOnNose) {
 TEST_F(Search, FindsTheModelItself) {
   for (unsigned seed : {1u, 2u, 3u}) add(seed);
   const Eigen::Affine3d motion = turned_and_scaled(0.9);
-  const Candidate c = find(noseless(motion)).at(0);
+  const search::Candidate c = find(noseless(motion)).at(0);
   EXPECT_EQ(c.model, 0);
   EXPECT_LT((c.placement.matrix() - motion.matrix()).norm(), 0.02);
   EXPECT_LT(c.score, 0.03);
@@ -115,10 +115,10 @@ TEST_F(Search, BridgesUnits) {
   add(3, 1000);
   const Eigen::Affine3d motion = turned_and_scaled(1);
   for (bool scale : {true, false}) {
-    SearchOptions options;
+    search::SearchOptions options;
     options.candidates = 2;
     options.allow_scale = scale;
-    for (const Candidate& c : find(noseless(motion), options)) {
+    for (const search::Candidate& c : find(noseless(motion), options)) {
       const double unit = c.model == 0 ? 0.001 : 1000;
       expect_nose_to_nose(c, unsigned(c.model + 2), motion, unit);
       if (!scale) {
@@ -130,20 +130,20 @@ TEST_F(Search, BridgesUnits) {
 
 TEST_F(Search, IgnoresDamageAndOddCoordinates) {
   for (unsigned seed : {2u, 3u}) add(seed);
-  SearchQuery q;
+  search::SearchQuery q;
   std::vector<char> damaged;
   q.mesh = test::gouged(bust(1).mesh, bust(1).nose, 0.16, 0.12, 7, &damaged);
   for (char d : damaged) q.face_weight.push_back(d ? 0 : 1);
   q.region = Box(bust(1).nose - Vec3::Constant(0.22), bust(1).nose + Vec3::Constant(0.22));
   q.mesh.vertices[q.mesh.faces[0][0]].x() = std::numeric_limits<double>::quiet_NaN();
   q.mesh.vertices.push_back(Vec3::Constant(std::numeric_limits<double>::infinity()));
-  const Candidate c = find(q).at(0);
+  const search::Candidate c = find(q).at(0);
   expect_nose_to_nose(c, unsigned(c.model + 2), Eigen::Affine3d::Identity());
 }
 
 TEST_F(Search, IsTheSameForAnyNumberOfThreads) {
   for (unsigned seed : {2u, 3u, 4u}) add(seed);
-  SearchOptions one, three;
+  search::SearchOptions one, three;
   one.threads = 1, three.threads = 3;
   one.candidates = three.candidates = 3;
   const auto a = find(noseless(turned_and_scaled(1.1)), one), b = find(noseless(turned_and_scaled(1.1)), three);
@@ -158,25 +158,25 @@ TEST_F(Search, IsTheSameForAnyNumberOfThreads) {
 TEST_F(Search, RemembersWhereModelsFitted) {
   for (unsigned seed : {2u, 3u, 4u}) add(seed);
   const Eigen::Affine3d motion = turned_and_scaled(1.1);
-  const ModelDatabase database(folder_.string(), progress_);
-  SearchMemory memory;
-  find_similar(noseless(motion), database, {}, progress_, &memory);
+  const io::ModelDatabase database(folder_.string(), progress_);
+  search::SearchMemory memory;
+  search::find_similar(noseless(motion), database, {}, progress_, &memory);
   EXPECT_EQ(memory.placements.size(), 3u);
   fs::remove_all(folder_ / ".model-cache");
   std::vector<std::string> stages;
   Progress watched([&](int, const char* stage) { return stages.push_back(stage), true; });
-  const Candidate c = find_similar(noseless(motion), database, {}, watched, &memory).at(0);
+  const search::Candidate c = search::find_similar(noseless(motion), database, {}, watched, &memory).at(0);
   expect_nose_to_nose(c, unsigned(c.model + 2), motion);
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "Comparing everywhere"), 0);
   EXPECT_FALSE(fs::exists(folder_ / ".model-cache"));
   // Wrong memories do not mislead.
   for (auto& [model, placement] : memory.placements) placement = Eigen::Translation3d(1, 2, 3) * placement;
-  const Candidate again = find_similar(noseless(motion), database, {}, progress_, &memory).at(0);
+  const search::Candidate again = search::find_similar(noseless(motion), database, {}, progress_, &memory).at(0);
   expect_nose_to_nose(again, unsigned(again.model + 2), motion);
 }
 
 TEST_F(Search, SaysWhatIsWrong) {
-  const auto sentence = [&](const SearchQuery& q) -> std::string {
+  const auto sentence = [&](const search::SearchQuery& q) -> std::string {
     try {
       find(q);
     } catch (const UserError& e) {
@@ -185,7 +185,7 @@ TEST_F(Search, SaysWhatIsWrong) {
     return "";
   };
   std::ofstream(folder_ / "a.off") << "OFF\n";
-  SearchQuery q = noseless(Eigen::Affine3d::Identity());
+  search::SearchQuery q = noseless(Eigen::Affine3d::Identity());
   EXPECT_NE(sentence(q).find("No model of the database can be used"), std::string::npos);
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("skipped: ", 0) == 0; }),
             1);
@@ -200,10 +200,10 @@ TEST_F(Search, SaysWhatIsWrong) {
 
 TEST_F(Search, StopsWhenCancelled) {
   add(2);
-  const ModelDatabase database(folder_.string(), progress_);
+  const io::ModelDatabase database(folder_.string(), progress_);
   for (int last : {0, 40, 60, 80, 90}) {
     Progress p([&](int percent, const char*) { return percent < last; });
-    EXPECT_THROW(find_similar(noseless(Eigen::Affine3d::Identity()), database, {}, p), Cancelled) << last;
+    EXPECT_THROW(search::find_similar(noseless(Eigen::Affine3d::Identity()), database, {}, p), Cancelled) << last;
   }
 }
 

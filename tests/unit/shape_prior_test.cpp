@@ -16,8 +16,8 @@ std::vector<Vec3> strip(double bump, double tilt) {
   return points;
 }
 
-std::vector<PlaneObservation> ends_of(const std::vector<Vec3>& shape, double noise) {
-  std::vector<PlaneObservation> seen;
+std::vector<mend::PlaneObservation> ends_of(const std::vector<Vec3>& shape, double noise) {
+  std::vector<mend::PlaneObservation> seen;
   for (int v = 0; v < int(shape.size()); ++v)
     if (std::abs(shape[v].x()) > 0.5) seen.push_back({v, shape[v], Vec3::UnitZ(), noise});
   return seen;
@@ -30,37 +30,37 @@ double worst(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 TEST(ShapePrior, NothingSeenIsTheMean) {
-  const ShapePrior prior({strip(0.1, 0), strip(0.3, 0)}, {0.25, 0.75}, 1);
+  const mend::ShapePrior prior({strip(0.1, 0), strip(0.3, 0)}, {0.25, 0.75}, 1);
   EXPECT_LT(worst(prior.given({}), strip(0.25, 0)), 1e-12);
 }
 
 TEST(ShapePrior, WhatGoesTogetherInTheShapesIsFollowed) {
   // The higher the bump, the steeper the tilt: the ends tell the bump's height.
-  const ShapePrior prior({strip(2, 1), strip(6, 3), strip(4, 2)}, {0.3, 0.3, 0.4}, 1);
+  const mend::ShapePrior prior({strip(2, 1), strip(6, 3), strip(4, 2)}, {0.3, 0.3, 0.4}, 1);
   const std::vector<Vec3> truth = strip(5, 2.5);
-  const std::vector<PlaneObservation> seen = ends_of(truth, 1e-4);
+  const std::vector<mend::PlaneObservation> seen = ends_of(truth, 1e-4);
   EXPECT_LT(worst(prior.given(seen), truth), 0.1 * worst(prior.mean(), truth));
 }
 
 TEST(ShapePrior, WhatNoBlendExplainsIsMetWhereItIsSeen) {
-  const ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
+  const mend::ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
   std::vector<Vec3> truth = strip(0.25, 0);
   for (Vec3& p : truth) p.z() += 0.1 * p.x() * p.x();
   const std::vector<Vec3> shape = prior.given(ends_of(truth, 1e-4));
-  for (const PlaneObservation& s : ends_of(truth, 0)) EXPECT_NEAR(shape[s.vertex].z(), truth[s.vertex].z(), 1e-3);
+  for (const mend::PlaneObservation& s : ends_of(truth, 0)) EXPECT_NEAR(shape[s.vertex].z(), truth[s.vertex].z(), 1e-3);
 }
 
 TEST(ShapePrior, NoisyPointsAreAveraged) {
-  const ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
-  std::vector<PlaneObservation> seen = ends_of(strip(0.25, 0), 0.5);
+  const mend::ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
+  std::vector<mend::PlaneObservation> seen = ends_of(strip(0.25, 0), 0.5);
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i].point.z() += i % 2 ? 0.1 : -0.1;
   EXPECT_LT(worst(prior.given(seen), strip(0.25, 0)), 0.02);
 }
 
 TEST(ShapePrior, OnlyTheNormalCounts) {
-  const ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
-  std::vector<PlaneObservation> seen = ends_of(strip(0.25, 0), 1e-3);
-  for (PlaneObservation& s : seen) s.point += Vec3(0.3, -0.7, 0);
+  const mend::ShapePrior prior({strip(0.2, 0), strip(0.3, 0)}, {0.5, 0.5}, 1);
+  std::vector<mend::PlaneObservation> seen = ends_of(strip(0.25, 0), 1e-3);
+  for (mend::PlaneObservation& s : seen) s.point += Vec3(0.3, -0.7, 0);
   EXPECT_LT(worst(prior.given(seen), prior.mean()), 1e-9);
 }
 

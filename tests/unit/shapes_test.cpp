@@ -38,12 +38,12 @@ TEST(Shapes, AreClosedOrientedAndClean) {
       {"glasses", glasses(), 2},
   };
   for (const Named& shape : all) {
-    const MeshCheck c = check(shape.mesh);
-    EXPECT_TRUE(c.manifold() && c.closed() && c.oriented()) << shape.name << "\n" << to_string(c);
+    const mesh::MeshCheck c = mesh::check(shape.mesh);
+    EXPECT_TRUE(c.manifold() && c.closed() && c.oriented()) << shape.name << "\n" << mesh::to_string(c);
     EXPECT_EQ(c.components, 1) << shape.name;
     EXPECT_EQ(c.euler, 2 - 2 * shape.genus) << shape.name;
     EXPECT_EQ(c.degenerate_faces, 0) << shape.name;
-    EXPECT_EQ(self_intersections(shape.mesh), 0) << shape.name;
+    EXPECT_EQ(mesh::self_intersections(shape.mesh), 0) << shape.name;
     EXPECT_GT(volume(shape.mesh), 0) << shape.name;
   }
 }
@@ -66,8 +66,8 @@ TEST(Shapes, RandomScenesOverlapAndKeepSomething) {
     const Scene s = random_scene(seed);
     EXPECT_TRUE(s.a.bounds().intersects(s.b.bounds()));
     for (const auto* keep : {&s.keep_a, &s.keep_b}) EXPECT_GT(std::accumulate(keep->begin(), keep->end(), 0), 3);
-    EXPECT_TRUE(check(s.a).manifold() && check(s.a).closed()) << seed;
-    EXPECT_TRUE(check(s.b).manifold() && check(s.b).closed()) << seed;
+    EXPECT_TRUE(mesh::check(s.a).manifold() && mesh::check(s.a).closed()) << seed;
+    EXPECT_TRUE(mesh::check(s.b).manifold() && mesh::check(s.b).closed()) << seed;
   }
 }
 

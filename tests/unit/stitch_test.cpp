@@ -29,36 +29,36 @@ std::vector<int> faces_at_vertices(const Mesh& mesh) {
   return like;
 }
 
-std::vector<Loop> boundary(const Mesh& mesh) { return trace_loops(boundary_half_edges(mesh)); }
+std::vector<mesh::Loop> boundary(const Mesh& mesh) { return mesh::trace_loops(mesh::boundary_half_edges(mesh)); }
 
-std::vector<Loop> loops_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& pass) {
-  std::vector<Loop> found;
-  for (const Loop& l : boundary(mesh))
+std::vector<mesh::Loop> loops_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& pass) {
+  std::vector<mesh::Loop> found;
+  for (const mesh::Loop& l : boundary(mesh))
     if (pass(mesh.vertices[l.vertices[0]])) found.push_back(l);
   return found;
 }
-std::vector<Loop> upper(const Mesh& mesh) {
+std::vector<mesh::Loop> upper(const Mesh& mesh) {
   return loops_where(mesh, [](const Vec3& v) { return v.z() > 0; });
 }
-std::vector<Loop> lower(const Mesh& mesh) {
+std::vector<mesh::Loop> lower(const Mesh& mesh) {
   return loops_where(mesh, [](const Vec3& v) { return v.z() < 0; });
 }
 
 TEST(TraceLoops, EveryHalfEdgeOnce) {
-  const std::vector<Loop> two = trace_loops({{0, 1}, {5, 6}, {1, 2}, {6, 5}, {2, 0}});
+  const std::vector<mesh::Loop> two = mesh::trace_loops({{0, 1}, {5, 6}, {1, 2}, {6, 5}, {2, 0}});
   ASSERT_EQ(two.size(), 2u);
   EXPECT_EQ(two[0].vertices, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(two[1].vertices, (std::vector<int>{5, 6}));
   // A chain between two ends of an open surface.
-  const std::vector<Loop> chain = trace_loops({{3, 4}, {2, 3}, {4, 9}});
+  const std::vector<mesh::Loop> chain = mesh::trace_loops({{3, 4}, {2, 3}, {4, 9}});
   ASSERT_EQ(chain.size(), 1u);
   EXPECT_FALSE(chain[0].closed);
   EXPECT_EQ(chain[0].vertices, (std::vector<int>{2, 3, 4, 9}));
   // A figure of eight through vertex 0: however it is taken, all six are used.
   int length = 0;
-  for (const Loop& l : trace_loops({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}})) length += l.size();
+  for (const mesh::Loop& l : mesh::trace_loops({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}})) length += l.size();
   EXPECT_EQ(length, 6);
-  EXPECT_TRUE(trace_loops({}).empty());
+  EXPECT_TRUE(mesh::trace_loops({}).empty());
 }
 
 TEST(Zipper, ClosesTwoRingsOfDifferentSizes) {
@@ -67,14 +67,14 @@ TEST(Zipper, ClosesTwoRingsOfDifferentSizes) {
       Mesh mesh;
       add_cup(mesh, n, 0.1, true);
       add_cup(mesh, m, -0.1, false, {0.05, 0, 0}, 1, turn * m);
-      const std::vector<Loop> a = upper(mesh), b = lower(mesh);
+      const std::vector<mesh::Loop> a = upper(mesh), b = lower(mesh);
       ASSERT_EQ(a.size(), 1u);
       ASSERT_EQ(b.size(), 1u);
-      EXPECT_LT(direction_agreement(mesh, a[0], b[0]), -0.5);
-      zipper(mesh, a[0], b[0], faces_at_vertices(mesh));
+      EXPECT_LT(seam::direction_agreement(mesh, a[0], b[0]), -0.5);
+      seam::zipper(mesh, a[0], b[0], faces_at_vertices(mesh));
       expect_closed_manifold(mesh, std::to_string(n) + " to " + std::to_string(m));
-      EXPECT_EQ(check(mesh).components, 1);
-      EXPECT_EQ(self_intersections(mesh), 0) << n << " to " << m;
+      EXPECT_EQ(mesh::check(mesh).components, 1);
+      EXPECT_EQ(mesh::self_intersections(mesh), 0) << n << " to " << m;
     }
 }
 
@@ -86,7 +86,7 @@ TEST(Zipper, NeverUsesACrossEdgeTwice) {
       Mesh mesh;
       add_cup(mesh, n, 0.01, true, {offset, 0, 0}, 0.05);
       add_cup(mesh, 30, -0.01, false);
-      zipper(mesh, upper(mesh)[0], lower(mesh)[0], faces_at_vertices(mesh));
+      seam::zipper(mesh, upper(mesh)[0], lower(mesh)[0], faces_at_vertices(mesh));
       expect_closed_manifold(mesh, "offset " + std::to_string(offset));
     }
 }
@@ -95,9 +95,9 @@ TEST(Zipper, CoincidentRingsGiveNoHole) {
   Mesh mesh;
   add_cup(mesh, 24, 0, true);
   add_cup(mesh, 24, 0, false);
-  const std::vector<Loop> loops = boundary(mesh);
+  const std::vector<mesh::Loop> loops = boundary(mesh);
   ASSERT_EQ(loops.size(), 2u);
-  zipper(mesh, loops[0], loops[1], faces_at_vertices(mesh));
+  seam::zipper(mesh, loops[0], loops[1], faces_at_vertices(mesh));
   expect_closed_manifold(mesh, "coincident");
 }
 
@@ -105,7 +105,7 @@ TEST(DirectionAgreement, TellsWhichWayContoursRun) {
   Mesh mesh;
   add_cup(mesh, 30, 0.1, true);
   add_cup(mesh, 47, -0.1, true);  // both cups up: both contours run the same way
-  EXPECT_GT(direction_agreement(mesh, upper(mesh)[0], lower(mesh)[0]), 0.9);
+  EXPECT_GT(seam::direction_agreement(mesh, upper(mesh)[0], lower(mesh)[0]), 0.9);
 }
 
 TEST(ZipperPieces, OneContourFacesTwo) {
@@ -121,30 +121,30 @@ TEST(ZipperPieces, OneContourFacesTwo) {
   mesh.vertices.emplace_back(0, 0, -1);
   for (int i = 0; i < n; ++i) mesh.faces.push_back({first + (i + 1) % n, first + i, first + n});
   const std::vector<int> like = faces_at_vertices(mesh);
-  const std::vector<Loop> a = upper(mesh), b = lower(mesh);
+  const std::vector<mesh::Loop> a = upper(mesh), b = lower(mesh);
   ASSERT_EQ(a.size(), 2u);
   ASSERT_EQ(b.size(), 1u);
   const int before = mesh.face_count();
-  const std::vector<Loop> rest = zipper_pieces(mesh, a, b, 0.5, like).open;
+  const std::vector<mesh::Loop> rest = seam::zipper_pieces(mesh, a, b, 0.5, like).open;
   EXPECT_GT(mesh.face_count(), before + 40);
-  const MeshCheck c = check(mesh);
-  EXPECT_EQ(c.nonmanifold_edges + c.inconsistent_edges, 0) << to_string(c);
+  const mesh::MeshCheck c = mesh::check(mesh);
+  EXPECT_EQ(c.nonmanifold_edges + c.inconsistent_edges, 0) << mesh::to_string(c);
   // What is left open is just the boundary that is left.
   std::set<std::array<int, 2>> left, said;
-  for (const auto& e : boundary_half_edges(mesh)) left.insert(e);
-  for (const Loop& l : rest) {
+  for (const auto& e : mesh::boundary_half_edges(mesh)) left.insert(e);
+  for (const mesh::Loop& l : rest) {
     EXPECT_TRUE(l.closed);
     for (int i = 0; i < l.size(); ++i) said.insert({l.vertices[i], l.vertices[(i + 1) % l.size()]});
   }
   EXPECT_EQ(said, left);
-  for (const Loop& l : rest) cap(mesh, l, like);
-  EXPECT_TRUE(check(mesh).closed() && check(mesh).oriented());
+  for (const mesh::Loop& l : rest) seam::cap(mesh, l, like);
+  EXPECT_TRUE(mesh::check(mesh).closed() && mesh::check(mesh).oriented());
 }
 
 TEST(ZipperPieces, NothingToFaceLeavesAllOpen) {
   Mesh mesh;
   add_cup(mesh, 12, 0.1, true);
-  const std::vector<Loop> rest = zipper_pieces(mesh, boundary(mesh), {}, 1, faces_at_vertices(mesh)).open;
+  const std::vector<mesh::Loop> rest = seam::zipper_pieces(mesh, boundary(mesh), {}, 1, faces_at_vertices(mesh)).open;
   ASSERT_EQ(rest.size(), 1u);
   EXPECT_EQ(rest[0].size(), 12);
   EXPECT_EQ(mesh.face_count(), 12);
@@ -156,7 +156,7 @@ TEST(Cap, ClosesContoursOfAnyShape) {
     Mesh mesh;
     add_cup(mesh, n, 0, true);
     for (int i = 0; i < n; ++i) mesh.vertices[i] *= random.uniform(0.3, 1.5);
-    cap(mesh, boundary(mesh)[0], faces_at_vertices(mesh));
+    seam::cap(mesh, boundary(mesh)[0], faces_at_vertices(mesh));
     expect_closed_manifold(mesh, std::to_string(n) + " corners");
     EXPECT_EQ(mesh.face_count(), n + n - 2);
   }
@@ -166,15 +166,15 @@ TEST(MatchLoops, PairsTheNearestWithinTheGap) {
   Mesh mesh;
   for (const double x : {0.0, 5.0, 10.0}) add_cup(mesh, 12, 0.1, true, {x, 0, 0});
   for (const double x : {10.0, 0.0}) add_cup(mesh, 16, -0.1, false, {x, 0, 0});
-  const std::vector<Loop> a = upper(mesh), b = lower(mesh);
+  const std::vector<mesh::Loop> a = upper(mesh), b = lower(mesh);
   double gap = 0;
-  const auto pairs = match_loops(mesh, a, b, 0.5, gap);
+  const auto pairs = mesh::match_loops(mesh, a, b, 0.5, gap);
   ASSERT_EQ(pairs.size(), 2u);
   for (const auto& [i, j] : pairs)
     EXPECT_LT((mesh.vertices[a[i].vertices[0]] - mesh.vertices[b[j].vertices[0]]).norm(), 3);
   EXPECT_GT(gap, 0.19);
   EXPECT_LT(gap, 0.35);
-  EXPECT_TRUE(match_loops(mesh, a, b, 0.1, gap).empty());
+  EXPECT_TRUE(mesh::match_loops(mesh, a, b, 0.1, gap).empty());
   EXPECT_EQ(gap, 0);
 }
 

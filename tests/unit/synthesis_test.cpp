@@ -14,7 +14,7 @@ namespace {
 
 /// A member of a class of discs with five bumps, each somewhere near its place:
 /// plane 0 is how it looks lit from the side, plane 1 its height.
-PatchImage bumps(unsigned seed, int width = 72, int height = 64) {
+synthesis::PatchImage bumps(unsigned seed, int width = 72, int height = 64) {
   std::mt19937 engine(seed);
   const auto uniform = [&](double low, double high) { return low + (high - low) * double(engine()) / 4294967296.0; };
   struct Bump {
@@ -25,7 +25,7 @@ PatchImage bumps(unsigned seed, int width = 72, int height = 64) {
   for (const auto& p : places)
     list.push_back({p[0] + uniform(-4, 4), p[1] + uniform(-4, 4), uniform(4, 8), uniform(2, 6)});
   const double radius = uniform(22, 26);
-  PatchImage image;
+  synthesis::PatchImage image;
   image.planes = {cv::Mat::zeros(height, width, CV_32F), cv::Mat::zeros(height, width, CV_32F)};
   image.mask = cv::Mat::zeros(height, width, CV_8U);
   const auto at = [&](double x, double y) {
@@ -45,19 +45,19 @@ PatchImage bumps(unsigned seed, int width = 72, int height = 64) {
   return image;
 }
 
-PatchImage without_depth(PatchImage image) {
+synthesis::PatchImage without_depth(synthesis::PatchImage image) {
   image.planes[1] = cv::Mat();
   return image;
 }
 
-std::vector<PatchImage> examples(int count, unsigned first = 1) {
-  std::vector<PatchImage> list;
+std::vector<synthesis::PatchImage> examples(int count, unsigned first = 1) {
+  std::vector<synthesis::PatchImage> list;
   for (int i = 0; i < count; ++i) list.push_back(bumps(first + i));
   return list;
 }
 
-SynthesisOptions depth_options() {
-  SynthesisOptions o;
+synthesis::SynthesisOptions depth_options() {
+  synthesis::SynthesisOptions o;
   o.channels = {{0, 1, false, true}, {0, 0.5, true, false}, {1, 1, false, false}};
   o.synthesized = {1};
   return o;
@@ -73,16 +73,17 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-SynthesisResult run(const PatchImage& query, const std::vector<PatchImage>& list, const SynthesisOptions& options,
-                    const ExampleUpdate& update = {}) {
+synthesis::SynthesisResult run(const synthesis::PatchImage& query, const std::vector<synthesis::PatchImage>& list,
+                               const synthesis::SynthesisOptions& options,
+                               const synthesis::ExampleUpdate& update = {}) {
   Progress progress;
-  return synthesize(query, list, options, update, progress);
+  return synthesis::synthesize(query, list, options, update, progress);
 }
 
 TEST(Synthesis, FindsWhatIsInTheDatabase) {
-  std::vector<PatchImage> list = examples(4);
-  const PatchImage query = without_depth(list[2]);
-  const SynthesisResult r = run(query, list, depth_options());
+  std::vector<synthesis::PatchImage> list = examples(4);
+  const synthesis::PatchImage query = without_depth(list[2]);
+  const synthesis::SynthesisResult r = run(query, list, depth_options());
   cv::Scalar mean, deviation;
   cv::meanStdDev(list[2].planes[1], mean, deviation, query.mask);
   EXPECT_LT(error(r.planes[0], list[2].planes[1], query.mask), 0.02 * deviation[0]);
@@ -91,15 +92,15 @@ TEST(Synthesis, FindsWhatIsInTheDatabase) {
 }
 
 TEST(Synthesis, BeatsTheMeanAndEachExample) {
-  const std::vector<PatchImage> list = examples(16);
+  const std::vector<synthesis::PatchImage> list = examples(16);
   double ours = 0, means = 0, nearests = 0;
   for (unsigned seed = 100; seed < 106; ++seed) {
-    const PatchImage query = bumps(seed);
-    const SynthesisResult r = run(without_depth(query), list, depth_options());
+    const synthesis::PatchImage query = bumps(seed);
+    const synthesis::SynthesisResult r = run(without_depth(query), list, depth_options());
     cv::Mat mean = cv::Mat::zeros(query.mask.size(), CV_32F);
     double nearest = 1e30;  // knowing the truth
-    for (const PatchImage& e : list) {
-      const cv::Mat depth = extend(e.planes[1], e.mask);
+    for (const synthesis::PatchImage& e : list) {
+      const cv::Mat depth = synthesis::extend(e.planes[1], e.mask);
       mean += depth / double(list.size());
       nearest = std::min(nearest, error(depth, query.planes[1], query.mask));
     }
@@ -112,16 +113,16 @@ TEST(Synthesis, BeatsTheMeanAndEachExample) {
 }
 
 TEST(Synthesis, TheObjectiveNeverFalls) {
-  SynthesisOptions o = depth_options();
+  synthesis::SynthesisOptions o = depth_options();
   o.tolerance = 0;
-  const ExampleUpdate swap = [&](const SynthesisState& state) {
-    ExampleChange change;
+  const synthesis::ExampleUpdate swap = [&](const synthesis::SynthesisState& state) {
+    synthesis::ExampleChange change;
     change.drop = {int(std::min_element(state.used.begin(), state.used.end()) - state.used.begin())};
     change.add = {bumps(50 + unsigned(state.level))};
     return change;
   };
-  for (const ExampleUpdate& update : {ExampleUpdate(), swap}) {
-    const SynthesisResult r = run(without_depth(bumps(9)), examples(6, 20), o, update);
+  for (const synthesis::ExampleUpdate& update : {synthesis::ExampleUpdate(), swap}) {
+    const synthesis::SynthesisResult r = run(without_depth(bumps(9)), examples(6, 20), o, update);
     ASSERT_EQ(r.objective.size(), o.patch_sizes.size());
     for (const std::vector<double>& level : r.objective) {
       ASSERT_GE(level.size(), 2u);
@@ -132,13 +133,13 @@ TEST(Synthesis, TheObjectiveNeverFalls) {
 }
 
 TEST(Synthesis, ThreadsDoNotMatter) {
-  const PatchImage query = without_depth(bumps(7, 111, 87));
-  SynthesisOptions o = depth_options();
+  const synthesis::PatchImage query = without_depth(bumps(7, 111, 87));
+  synthesis::SynthesisOptions o = depth_options();
   o.threads = 1;
-  const SynthesisResult one = run(query, examples(5, 30), o);
+  const synthesis::SynthesisResult one = run(query, examples(5, 30), o);
   for (int threads : {2, 3, 8}) {
     o.threads = threads;
-    const SynthesisResult r = run(query, examples(5, 30), o);
+    const synthesis::SynthesisResult r = run(query, examples(5, 30), o);
     EXPECT_TRUE(same(r.planes[0], one.planes[0]));
     EXPECT_TRUE(same(r.example, one.example));
     EXPECT_TRUE(same(r.distance, one.distance));
@@ -148,16 +149,16 @@ TEST(Synthesis, ThreadsDoNotMatter) {
 
 TEST(Synthesis, NearlyAsGoodAsExactSearch) {
   // One level without iterations, so that both search for the same windows.
-  SynthesisOptions o = depth_options();
+  synthesis::SynthesisOptions o = depth_options();
   o.patch_sizes = {7};
   o.longest_coarsest = 0;
   o.max_iterations = 1;
   for (unsigned seed : {40u, 41u}) {
-    const PatchImage query = bumps(seed);  // its depth known: both channels are compared
+    const synthesis::PatchImage query = bumps(seed);  // its depth known: both channels are compared
     o.synthesized = {};
-    const SynthesisResult fast = run(query, examples(6, 60), o);
+    const synthesis::SynthesisResult fast = run(query, examples(6, 60), o);
     o.exact_search = true;
-    const SynthesisResult exact = run(query, examples(6, 60), o);
+    const synthesis::SynthesisResult exact = run(query, examples(6, 60), o);
     o.exact_search = false;
     double a = 0, b = 0;
     for (int y = 0; y < query.mask.rows; ++y)
@@ -171,9 +172,9 @@ TEST(Synthesis, NearlyAsGoodAsExactSearch) {
 }
 
 TEST(Synthesis, SourcesAreWhereTheySayTheyAre) {
-  const std::vector<PatchImage> list = examples(5, 70);
-  const PatchImage query = without_depth(bumps(8));
-  const SynthesisResult r = run(query, list, depth_options());
+  const std::vector<synthesis::PatchImage> list = examples(5, 70);
+  const synthesis::PatchImage query = without_depth(bumps(8));
+  const synthesis::SynthesisResult r = run(query, list, depth_options());
   std::vector<long> used(list.size(), 0);
   for (int y = 0; y < query.mask.rows; ++y)
     for (int x = 0; x < query.mask.cols; ++x) {
@@ -189,52 +190,52 @@ TEST(Synthesis, SourcesAreWhereTheySayTheyAre) {
 }
 
 TEST(Synthesis, DroppedExamplesAreSearchedNoMoreAndNewOnesAre) {
-  std::vector<PatchImage> list = examples(3, 80);
-  const PatchImage truth = bumps(200);
-  const ExampleUpdate update = [&](const SynthesisState& state) {
-    ExampleChange change;
+  std::vector<synthesis::PatchImage> list = examples(3, 80);
+  const synthesis::PatchImage truth = bumps(200);
+  const synthesis::ExampleUpdate update = [&](const synthesis::SynthesisState& state) {
+    synthesis::ExampleChange change;
     if (state.level == state.levels - 1) change = {{0, 1}, {truth}};
     return change;
   };
-  const SynthesisResult r = run(without_depth(truth), list, depth_options(), update);
+  const synthesis::SynthesisResult r = run(without_depth(truth), list, depth_options(), update);
   EXPECT_EQ(r.active, (std::vector<char>{0, 0, 1, 1}));
   EXPECT_GT(r.used[3], long(0.9 * cv::countNonZero(truth.mask)));
 }
 
 TEST(Synthesis, ScalesOfPlanesDoNotMatter) {
-  std::vector<PatchImage> list = examples(4, 90);
-  PatchImage query = without_depth(bumps(17));
-  const SynthesisResult plain = run(query, list, depth_options());
-  for (PatchImage& e : list) e.planes[0] *= 64, e.planes[1] *= 0.25;
+  std::vector<synthesis::PatchImage> list = examples(4, 90);
+  synthesis::PatchImage query = without_depth(bumps(17));
+  const synthesis::SynthesisResult plain = run(query, list, depth_options());
+  for (synthesis::PatchImage& e : list) e.planes[0] *= 64, e.planes[1] *= 0.25;
   query.planes[0] *= 64;
-  const SynthesisResult scaled = run(query, list, depth_options());
+  const synthesis::SynthesisResult scaled = run(query, list, depth_options());
   EXPECT_LT(error(plain.planes[0], scaled.planes[0] * 4, query.mask), 1e-3);
 }
 
 TEST(Synthesis, LightAndContrastDoNotMatterToNormalizedChannels) {
-  SynthesisOptions o = depth_options();
+  synthesis::SynthesisOptions o = depth_options();
   o.channels[1].weight = 0;
-  const std::vector<PatchImage> list = examples(6, 120);
-  PatchImage query = without_depth(bumps(33));
-  const SynthesisResult plain = run(query, list, o);
+  const std::vector<synthesis::PatchImage> list = examples(6, 120);
+  synthesis::PatchImage query = without_depth(bumps(33));
+  const synthesis::SynthesisResult plain = run(query, list, o);
   query.planes[0] = query.planes[0] * 3 + 5;
-  const SynthesisResult bright = run(query, list, o);
+  const synthesis::SynthesisResult bright = run(query, list, o);
   cv::Scalar mean, deviation;
   cv::meanStdDev(plain.planes[0], mean, deviation, query.mask);
   EXPECT_LT(error(plain.planes[0], bright.planes[0], query.mask), 0.1 * deviation[0]);
 }
 
 TEST(Synthesis, LargerImagesGetMoreLevels) {
-  const PatchImage query = without_depth(bumps(5, 300, 310));
-  const SynthesisResult r = run(query, {bumps(6, 300, 310)}, depth_options());
+  const synthesis::PatchImage query = without_depth(bumps(5, 300, 310));
+  const synthesis::SynthesisResult r = run(query, {bumps(6, 300, 310)}, depth_options());
   EXPECT_EQ(r.objective.size(), 4u);
 }
 
 TEST(Synthesis, SaysWhatIsWrong) {
-  const PatchImage query = without_depth(bumps(1));
-  const std::vector<PatchImage> list = examples(2);
+  const synthesis::PatchImage query = without_depth(bumps(1));
+  const std::vector<synthesis::PatchImage> list = examples(2);
   EXPECT_THROW(run(query, {}, depth_options()), UserError);
-  SynthesisOptions o = depth_options();
+  synthesis::SynthesisOptions o = depth_options();
   o.patch_sizes = {5, 8};
   EXPECT_THROW(run(query, list, o), UserError);
   o.patch_sizes = {31, 31, 31};
@@ -243,26 +244,26 @@ TEST(Synthesis, SaysWhatIsWrong) {
   EXPECT_THROW(run(query, list, o), UserError);
   o.patch_sizes = {};
   EXPECT_THROW(run(query, list, o), UserError);
-  PatchImage empty = query;
+  synthesis::PatchImage empty = query;
   empty.mask = cv::Mat::zeros(query.mask.size(), CV_8U);
   EXPECT_THROW(run(empty, list, depth_options()), UserError);
-  std::vector<PatchImage> mixed = list;
+  std::vector<synthesis::PatchImage> mixed = list;
   mixed[1].planes[1] = mixed[1].planes[1].rowRange(0, 20).clone();
   EXPECT_THROW(run(query, mixed, depth_options()), UserError);
 }
 
 TEST(Synthesis, StopsWhenAsked) {
-  const PatchImage query = without_depth(bumps(1));
+  const synthesis::PatchImage query = without_depth(bumps(1));
   int calls = 0;
   Progress progress([&](int, const char*) { return ++calls < 4; });
-  EXPECT_THROW(synthesize(query, examples(3), depth_options(), {}, progress), Cancelled);
+  EXPECT_THROW(synthesis::synthesize(query, examples(3), depth_options(), {}, progress), Cancelled);
 }
 
 TEST(Pyramid, CollapsesToWhatItWasMadeOf) {
-  const PatchImage image = bumps(3, 101, 67);
-  const ImagePyramid p = make_pyramid(image, 4);
+  const synthesis::PatchImage image = bumps(3, 101, 67);
+  const synthesis::ImagePyramid p = synthesis::make_pyramid(image, 4);
   cv::Mat sum = p.band(1, 3);
-  for (int l = 2; l >= 0; --l) sum = expand(sum, p.coverage[l].size()) + p.band(1, l);
+  for (int l = 2; l >= 0; --l) sum = synthesis::expand(sum, p.coverage[l].size()) + p.band(1, l);
   EXPECT_LT(cv::norm(sum, image.planes[1], cv::NORM_INF, image.mask), 1e-4);
 }
 
@@ -271,7 +272,7 @@ TEST(Pyramid, TheBackgroundIsFilledFromTheForeground) {
   for (int y = 10; y < 30; ++y)
     for (int x = 15; x < 35; ++x) plane.at<float>(y, x) = 3, mask.at<uchar>(y, x) = 255;
   plane.at<float>(0, 0) = NAN;
-  EXPECT_LT(cv::norm(extend(plane, mask), cv::Mat(40, 50, CV_32F, cv::Scalar(3)), cv::NORM_INF), 1e-4);
+  EXPECT_LT(cv::norm(synthesis::extend(plane, mask), cv::Mat(40, 50, CV_32F, cv::Scalar(3)), cv::NORM_INF), 1e-4);
 }
 
 }  // namespace

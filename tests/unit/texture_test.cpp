@@ -26,7 +26,7 @@ struct TextureFiles : testing::Test {
   std::string at(const std::string& name) const { return (folder / name).string(); }
   bool shows(const std::string& name, const cv::Mat& image) const {
     EXPECT_TRUE(cv::imwrite(at(name), image));
-    return shows_as_texture(at(name), read_image(at(name)));
+    return render::shows_as_texture(at(name), io::read_image(at(name)));
   }
   fs::path folder;
   cv::Mat gradient{4, 6, CV_8UC3, cv::Scalar(0)};
@@ -38,9 +38,9 @@ TEST_F(TextureFiles, WhatTheHostShowsAsItIs) {
   EXPECT_FALSE(shows("a.tif", gradient));
   EXPECT_FALSE(shows("deep.png", cv::Mat(4, 6, CV_16UC3, cv::Scalar(9000, 1, 1))));
   cv::Mat mask(4, 6, CV_8U, cv::Scalar(255));
-  EXPECT_TRUE(shows("opaque.png", with_alpha(gradient, mask)));
+  EXPECT_TRUE(shows("opaque.png", io::with_alpha(gradient, mask)));
   mask.at<uchar>(0, 0) = 0;
-  EXPECT_FALSE(shows("alpha.png", with_alpha(gradient, mask)));
+  EXPECT_FALSE(shows("alpha.png", io::with_alpha(gradient, mask)));
 }
 
 TEST_F(TextureFiles, APhotographHeldUpsideDownIsNot) {
@@ -55,33 +55,33 @@ TEST_F(TextureFiles, APhotographHeldUpsideDownIsNot) {
         "Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x03\0\0\0\0\0\0\0",
         36);
     std::ofstream(at("t.jpg"), std::ios::binary) << bytes.substr(0, 2) << exif << bytes.substr(2);
-    EXPECT_FALSE(shows_as_texture(at("t.jpg"), read_image(at("t.jpg"))));
+    EXPECT_FALSE(render::shows_as_texture(at("t.jpg"), io::read_image(at("t.jpg"))));
   }
 }
 
 TEST_F(TextureFiles, ColoursReachBeyondTheForeground) {
   cv::Mat mask(4, 6, CV_8U, cv::Scalar(0));
   mask(cv::Rect(2, 1, 2, 2)).setTo(255);
-  const cv::Mat out = extend_colors(gradient, mask);
+  const cv::Mat out = render::extend_colors(gradient, mask);
   EXPECT_EQ(out.at<cv::Vec3b>(0, 0), gradient.at<cv::Vec3b>(1, 2));
   EXPECT_EQ(out.at<cv::Vec3b>(3, 5), gradient.at<cv::Vec3b>(2, 3));
   EXPECT_EQ(out.at<cv::Vec3b>(1, 3), gradient.at<cv::Vec3b>(1, 3));
-  EXPECT_EQ(cv::norm(extend_colors(gradient, cv::Mat::zeros(4, 6, CV_8U)), gradient, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(render::extend_colors(gradient, cv::Mat::zeros(4, 6, CV_8U)), gradient, cv::NORM_INF), 0);
 }
 
 TEST_F(TextureFiles, NothingThatIsThereIsReplaced) {
   const cv::Mat all(4, 6, CV_8U, cv::Scalar(255));
-  const TextureTarget beside{"", at("face.tif"), {}};
-  EXPECT_EQ(write_texture(gradient, all, beside), at("face_texture.png"));
-  EXPECT_EQ(write_texture(gradient, all, beside), at("face_texture.png")) << "the same picture";
-  EXPECT_EQ(write_texture(255 - gradient, all, beside), at("face_texture_2.png"));
+  const render::TextureTarget beside{"", at("face.tif"), {}};
+  EXPECT_EQ(render::write_texture(gradient, all, beside), at("face_texture.png"));
+  EXPECT_EQ(render::write_texture(gradient, all, beside), at("face_texture.png")) << "the same picture";
+  EXPECT_EQ(render::write_texture(255 - gradient, all, beside), at("face_texture_2.png"));
   EXPECT_EQ(cv::norm(cv::imread(at("face_texture.png")), gradient, cv::NORM_INF), 0);
 
-  const TextureTarget mine{at("mine.png"), at("face.tif"), {"", at("face_texture.png")}};
-  EXPECT_EQ(write_texture(gradient, all, mine), at("mine.png"));
-  EXPECT_EQ(write_texture(255 - gradient, all, mine), at("mine.png")) << "asked for by name";
-  const TextureTarget input{at("face_texture.png"), at("face.tif"), mine.inputs};
-  EXPECT_THROW(write_texture(255 - gradient, all, input), UserError);
+  const render::TextureTarget mine{at("mine.png"), at("face.tif"), {"", at("face_texture.png")}};
+  EXPECT_EQ(render::write_texture(gradient, all, mine), at("mine.png"));
+  EXPECT_EQ(render::write_texture(255 - gradient, all, mine), at("mine.png")) << "asked for by name";
+  const render::TextureTarget input{at("face_texture.png"), at("face.tif"), mine.inputs};
+  EXPECT_THROW(render::write_texture(255 - gradient, all, input), UserError);
   EXPECT_EQ(cv::norm(cv::imread(at("face_texture.png")), gradient, cv::NORM_INF), 0);
 }
 

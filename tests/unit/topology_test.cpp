@@ -18,8 +18,8 @@ TEST(Topology, ClosedSurfacesAreClean) {
   const Mesh surfaces[] = {sphere(), torus(), box({0, 0, 0}, {1, 2, 3}, 3)};
   const int euler[] = {2, 0, 2};
   for (int i = 0; i < 3; ++i) {
-    const MeshCheck c = check(surfaces[i]);
-    EXPECT_TRUE(c.manifold() && c.closed() && c.oriented()) << to_string(c);
+    const mesh::MeshCheck c = mesh::check(surfaces[i]);
+    EXPECT_TRUE(c.manifold() && c.closed() && c.oriented()) << mesh::to_string(c);
     EXPECT_EQ(c.euler, euler[i]);
     EXPECT_EQ(c.components, 1);
     EXPECT_EQ(c.boundary_loops, 0);
@@ -32,12 +32,12 @@ TEST(Topology, HolesAreCountedAndTraced) {
   Mesh mesh = sphere(Vec3::Zero(), 1, 3);
   remove_face(mesh, 700);
   remove_face(mesh, 10);
-  const MeshCheck c = check(mesh);
+  const mesh::MeshCheck c = mesh::check(mesh);
   EXPECT_EQ(c.boundary_edges, 6);
   EXPECT_EQ(c.boundary_loops, 2);
   EXPECT_EQ(c.euler, 0);
   EXPECT_TRUE(c.manifold());
-  for (const std::vector<int>& loop : boundary_loops(mesh, edge_map(mesh))) EXPECT_EQ(loop.size(), 3u);
+  for (const std::vector<int>& loop : mesh::boundary_loops(mesh, mesh::edge_map(mesh))) EXPECT_EQ(loop.size(), 3u);
 }
 
 // The faces between the two holes make two fans at the vertex, and a border
@@ -60,7 +60,7 @@ TEST(Topology, HolesThatTouchAtAVertexMakeOneBorder) {
   ASSERT_GE(other, 0);
   remove_face(mesh, std::max(other, around[0]));
   remove_face(mesh, std::min(other, around[0]));
-  const MeshCheck c = check(mesh);
+  const mesh::MeshCheck c = mesh::check(mesh);
   EXPECT_EQ(c.boundary_edges, 6);
   EXPECT_EQ(c.boundary_loops, 1);
   EXPECT_EQ(c.nonmanifold_vertices, 1);
@@ -71,7 +71,7 @@ TEST(Topology, LoopsGoAlongTheFaces) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.faces = {{0, 1, 2}, {0, 2, 3}};
-  const auto loops = boundary_loops(mesh, edge_map(mesh));
+  const auto loops = mesh::boundary_loops(mesh, mesh::edge_map(mesh));
   ASSERT_EQ(loops.size(), 1u);
   EXPECT_EQ(loops[0], (std::vector<int>{0, 1, 2, 3}));
 }
@@ -80,18 +80,18 @@ TEST(Topology, NonManifoldEdgesAndVertices) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
   mesh.faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
-  MeshCheck c = check(mesh);
+  mesh::MeshCheck c = mesh::check(mesh);
   EXPECT_EQ(c.nonmanifold_edges, 1);
   EXPECT_EQ(c.nonmanifold_vertices, 2);
   EXPECT_EQ(c.boundary_edges, 6);
   EXPECT_EQ(c.components, 1);
   const Mesh pair = together({box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})});
-  EXPECT_EQ(check(pair).components, 2);
+  EXPECT_EQ(mesh::check(pair).components, 2);
   Mesh joined = pair;  // at one corner
   for (Triangle& f : joined.faces)
     for (int& v : f)
       if (v == 8) v = 0;
-  c = check(joined);
+  c = mesh::check(joined);
   EXPECT_EQ(c.nonmanifold_vertices, 1);
   EXPECT_EQ(c.nonmanifold_edges, 0);
   EXPECT_EQ(c.unused_vertices, 1);
@@ -100,36 +100,36 @@ TEST(Topology, NonManifoldEdgesAndVertices) {
 TEST(Topology, FlippedFacesAreInconsistent) {
   Mesh mesh = sphere();
   std::swap(mesh.faces[5][0], mesh.faces[5][1]);
-  EXPECT_EQ(check(mesh).inconsistent_edges, 3);
-  EXPECT_TRUE(check(mesh).manifold());
+  EXPECT_EQ(mesh::check(mesh).inconsistent_edges, 3);
+  EXPECT_TRUE(mesh::check(mesh).manifold());
 }
 
 TEST(Topology, DegenerateFaces) {
   Mesh mesh = sphere();
-  const MeshCheck clean = check(mesh);
+  const mesh::MeshCheck clean = mesh::check(mesh);
   mesh.faces.push_back({3, 3, 4});
   mesh.faces.push_back({5, 5, 5});
-  MeshCheck c = check(mesh);
+  mesh::MeshCheck c = mesh::check(mesh);
   EXPECT_EQ(c.degenerate_faces, 2);
   EXPECT_EQ(c.edges, clean.edges);
   EXPECT_EQ(c.euler, 2);
   EXPECT_TRUE(c.closed() && c.manifold());
   mesh.vertices = {{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {std::numeric_limits<double>::quiet_NaN(), 0, 0}};
   mesh.faces = {{0, 1, 2}};
-  c = check(mesh);
+  c = mesh::check(mesh);
   EXPECT_EQ(c.degenerate_faces, 1);
   EXPECT_EQ(c.nonfinite_vertices, 1);
 }
 
 TEST(Topology, EmptyMesh) {
-  const MeshCheck c = check({});
+  const mesh::MeshCheck c = mesh::check({});
   EXPECT_EQ(c.euler, 0);
   EXPECT_EQ(c.components, 0);
 }
 
 TEST(Topology, MatesPointAtEachOther) {
   const Mesh mesh = torus();
-  const EdgeMap map = edge_map(mesh);
+  const mesh::EdgeMap map = mesh::edge_map(mesh);
   for (int h = 0; h < int(map.mate.size()); ++h) {
     ASSERT_GE(map.mate[h], 0);
     ASSERT_EQ(map.mate[map.mate[h]], h);

@@ -25,24 +25,24 @@ TEST(Untangle, PartsFacesThatCross) {
   Mesh m = sheet(9);
   const Mesh flat = m;
   m.vertices[4 * 9 + 4] += Vec3(2.6, 0.3, 0);
-  ASSERT_GT(self_intersections(m), 0);
+  ASSERT_GT(mesh::self_intersections(m), 0);
   std::vector<char> movable(m.vertices.size(), 0);
   for (int j = 3; j < 6; ++j)
     for (int i = 3; i < 7; ++i) movable[j * 9 + i] = 1;
-  EXPECT_EQ(untangle(m, movable, 15, 1), 0);
-  EXPECT_EQ(self_intersections(m), 0);
+  EXPECT_EQ(seam::untangle(m, movable, 15, 1), 0);
+  EXPECT_EQ(mesh::self_intersections(m), 0);
   for (std::size_t v = 0; v < movable.size(); ++v) EXPECT_TRUE(movable[v] || m.vertices[v] == flat.vertices[v]) << v;
 }
 
 TEST(Untangle, LeavesACleanSurfaceAndWhatMayNotMove) {
   Mesh m = sheet(6);
   const std::vector<Vec3> before = m.vertices;
-  EXPECT_EQ(untangle(m, std::vector<char>(m.vertices.size(), 1), 15, 1), 0);
+  EXPECT_EQ(seam::untangle(m, std::vector<char>(m.vertices.size(), 1), 15, 1), 0);
   EXPECT_EQ(m.vertices, before);
   m.vertices[2 * 6 + 2] += Vec3(1.7, 0.1, 0);
-  ASSERT_GT(self_intersections(m), 0);
+  ASSERT_GT(mesh::self_intersections(m), 0);
   const std::vector<Vec3> crossing = m.vertices;
-  EXPECT_EQ(untangle(m, std::vector<char>(m.vertices.size(), 0), 15, 1), 0);  // none of them is movable
+  EXPECT_EQ(seam::untangle(m, std::vector<char>(m.vertices.size(), 0), 15, 1), 0);  // none of them is movable
   EXPECT_EQ(m.vertices, crossing);
 }
 
@@ -51,13 +51,13 @@ TEST(SplitPinches, EachFanGetsAVertexOfItsOwn) {
   Mesh m;
   m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   m.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}};
-  ASSERT_EQ(check(m).nonmanifold_vertices, 1);
+  ASSERT_EQ(mesh::check(m).nonmanifold_vertices, 1);
   std::vector<char> asked(7, 0);
-  EXPECT_TRUE(split_pinches(m, asked).empty());
-  EXPECT_EQ(check(m).nonmanifold_vertices, 1);
+  EXPECT_TRUE(mesh::split_pinches(m, asked).empty());
+  EXPECT_EQ(mesh::check(m).nonmanifold_vertices, 1);
   asked[0] = 1;
-  EXPECT_EQ(split_pinches(m, asked), std::vector<int>{0});
-  EXPECT_EQ(check(m).nonmanifold_vertices, 0);
+  EXPECT_EQ(mesh::split_pinches(m, asked), std::vector<int>{0});
+  EXPECT_EQ(mesh::check(m).nonmanifold_vertices, 0);
   ASSERT_EQ(m.vertex_count(), 8);
   EXPECT_EQ(m.vertices[7], m.vertices[0]);
 }

@@ -32,15 +32,15 @@ bool overlaps(const std::array<Vec3, 3>& triangle, const Vec3& center, double ha
   return true;
 }
 
-Grid unit_grid(int n) {
-  Grid g;
+cut::Grid unit_grid(int n) {
+  cut::Grid g;
   g.dims = {n, n, n};
   return g;
 }
 
-std::set<std::size_t> voxels_of(const Grid& grid, const std::array<Vec3, 3>& t) {
+std::set<std::size_t> voxels_of(const cut::Grid& grid, const std::array<Vec3, 3>& t) {
   std::set<std::size_t> found;
-  for_each_voxel(grid, t[0], t[1], t[2], [&](std::size_t v) {
+  cut::for_each_voxel(grid, t[0], t[1], t[2], [&](std::size_t v) {
     EXPECT_LT(v, grid.count());
     EXPECT_TRUE(found.insert(v).second) << "visited twice";
   });
@@ -48,7 +48,7 @@ std::set<std::size_t> voxels_of(const Grid& grid, const std::array<Vec3, 3>& t) 
 }
 
 /// Nothing that the triangle touches is left out, nothing far from it is in.
-void expect_conservative(const Grid& grid, const std::array<Vec3, 3>& t) {
+void expect_conservative(const cut::Grid& grid, const std::array<Vec3, 3>& t) {
   const std::set<std::size_t> found = voxels_of(grid, t);
   for (std::size_t v = 0; v < grid.count(); ++v) {
     const auto [i, j, k] = grid.cell(v);
@@ -61,7 +61,7 @@ void expect_conservative(const Grid& grid, const std::array<Vec3, 3>& t) {
   }
 }
 
-void expect_samples_inside(const Grid& grid, const std::array<Vec3, 3>& t, Random& random) {
+void expect_samples_inside(const cut::Grid& grid, const std::array<Vec3, 3>& t, Random& random) {
   const std::set<std::size_t> found = voxels_of(grid, t);
   for (int s = 0; s < 60; ++s) {
     double u = random.uniform(0, 1), v = random.uniform(0, 1);
@@ -78,7 +78,7 @@ Vec3 random_point(Random& random, double low, double high) {
 
 TEST(Rasterize, AgreesWithSeparatingAxesOnEveryVoxel) {
   Random random(1);
-  const Grid grid = unit_grid(9);
+  const cut::Grid grid = unit_grid(9);
   for (int n = 0; n < 300; ++n) {
     const double reach = n % 3 ? 12 : 40;  // some reach far out of the grid
     const Vec3 a = random_point(random, 4.5 - reach / 2, 4.5 + reach / 2);
@@ -91,7 +91,7 @@ TEST(Rasterize, AgreesWithSeparatingAxesOnEveryVoxel) {
 }
 
 TEST(Rasterize, TrianglesOnVoxelSidesTouchBothNeighbours) {
-  const Grid grid = unit_grid(6);
+  const cut::Grid grid = unit_grid(6);
   for (int axis = 0; axis < 3; ++axis) {
     std::array<Vec3, 3> t{Vec3(1.5, 1.5, 1.5), Vec3(4.5, 1.5, 1.5), Vec3(1.5, 4.5, 1.5)};
     for (Vec3& p : t) p = Vec3(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]);
@@ -106,7 +106,7 @@ TEST(Rasterize, TrianglesOnVoxelSidesTouchBothNeighbours) {
 
 TEST(Rasterize, NeedlesSegmentsAndPoints) {
   Random random(2);
-  const Grid grid = unit_grid(9);
+  const cut::Grid grid = unit_grid(9);
   for (int n = 0; n < 300; ++n) {
     const Vec3 a = random_point(random, 0.5, 8.5), d = random.direction() * random.uniform(0.1, 9);
     const double thick = n % 3 == 0 ? 0 : n % 3 == 1 ? 1e-15 : 1e-8;
@@ -121,7 +121,7 @@ TEST(Rasterize, NeedlesSegmentsAndPoints) {
 
 TEST(Rasterize, HugeTrianglesCostNoMoreThanTheGrid) {
   Random random(3);
-  const Grid grid = unit_grid(9);
+  const cut::Grid grid = unit_grid(9);
   for (int n = 0; n < 60; ++n) {
     const Vec3 through = random_point(random, 0, 9);
     const Vec3 u = random.direction(), v = u.cross(random.direction()).normalized();
@@ -135,8 +135,8 @@ TEST(Rasterize, HugeTrianglesCostNoMoreThanTheGrid) {
 TEST(Rasterize, AClosedSurfaceHasNoLeak) {
   // From outside, N6 steps over unset voxels never come in.
   const Mesh mesh = noisy_sphere(Vec3::Zero(), 1, 3, 0.5, 4);
-  const Grid grid = Grid::over(mesh.bounds(), 24);
-  const VoxelSet set = rasterize(mesh, {}, grid, 1);
+  const cut::Grid grid = cut::Grid::over(mesh.bounds(), 24);
+  const cut::VoxelSet set = cut::rasterize(mesh, {}, grid, 1);
   std::vector<char> outside(grid.count(), 0);
   std::vector<std::size_t> stack{0};
   outside[0] = 1;
@@ -158,12 +158,12 @@ TEST(Rasterize, AClosedSurfaceHasNoLeak) {
 
 TEST(Rasterize, FlagsAndThreads) {
   const Mesh mesh = torus();
-  const Grid grid = Grid::over(mesh.bounds(), 30);
+  const cut::Grid grid = cut::Grid::over(mesh.bounds(), 30);
   std::vector<char> flags = faces_where(mesh, [](const Vec3& c) { return c.x() > 0; });
-  const VoxelSet all = rasterize(mesh, {}, grid, 1), half = rasterize(mesh, flags, grid, 1);
+  const cut::VoxelSet all = cut::rasterize(mesh, {}, grid, 1), half = cut::rasterize(mesh, flags, grid, 1);
   for (const int threads : {2, 3, 8}) {
-    EXPECT_EQ(rasterize(mesh, {}, grid, threads).cells(), all.cells());
-    EXPECT_EQ(rasterize(mesh, flags, grid, threads).cells(), half.cells());
+    EXPECT_EQ(cut::rasterize(mesh, {}, grid, threads).cells(), all.cells());
+    EXPECT_EQ(cut::rasterize(mesh, flags, grid, threads).cells(), half.cells());
   }
   EXPECT_GT(half.size(), 0);
   EXPECT_LT(half.size(), all.size());
@@ -178,7 +178,7 @@ TEST(Grid, CoversTheBoxWithAVoxelAllAround) {
     const Vec3 sides = scale * random_point(random, n % 5 ? 0.01 : 0, 1);
     const Box box(low, low + sides);
     const int resolution = 1 + random.below(100);
-    const Grid g = Grid::over(box, resolution);
+    const cut::Grid g = cut::Grid::over(box, resolution);
     EXPECT_NEAR(g.size * resolution, sides.maxCoeff(), 1e-6 * sides.maxCoeff());
     EXPECT_EQ(*std::max_element(g.dims.begin(), g.dims.end()), resolution + 2);
     const Vec3 from = g.to_grid(box.min()), to = g.to_grid(box.max());
@@ -196,7 +196,7 @@ TEST(Grid, CoversTheBoxWithAVoxelAllAround) {
 
 TEST(VoxelSet, RanksNumberTheSetVoxelsInOrder) {
   Random random(5);
-  VoxelSet set(1000), other(1000);
+  cut::VoxelSet set(1000), other(1000);
   std::set<std::size_t> expected;
   for (int n = 0; n < 200; ++n) {
     const std::size_t v = std::size_t(random.below(1000));
@@ -208,7 +208,7 @@ TEST(VoxelSet, RanksNumberTheSetVoxelsInOrder) {
   EXPECT_EQ(set.cells(), std::vector<std::size_t>(expected.begin(), expected.end()));
   int node = 0;
   for (std::size_t v = 0; v < 1000; ++v) EXPECT_EQ(set.node(v), expected.count(v) ? node++ : -1);
-  VoxelSet both = set, any = set;
+  cut::VoxelSet both = set, any = set;
   both &= other, any |= other;
   for (std::size_t v = 0; v < 1000; ++v) {
     EXPECT_EQ(both.has(v), set.has(v) && other.has(v));
@@ -218,18 +218,18 @@ TEST(VoxelSet, RanksNumberTheSetVoxelsInOrder) {
 
 TEST(JointVoxels, FlagsSayWhatPassesThrough) {
   const Mesh a = sphere(Vec3::Zero(), 1), b = sphere({0.8, 0, 0}, 1);
-  const Grid grid = Grid::over(a.bounds().merged(b.bounds()), 24);
-  const VoxelSet va = rasterize(a, {}, grid, 1), vb = rasterize(b, {}, grid, 1);
+  const cut::Grid grid = cut::Grid::over(a.bounds().merged(b.bounds()), 24);
+  const cut::VoxelSet va = cut::rasterize(a, {}, grid, 1), vb = cut::rasterize(b, {}, grid, 1);
   const auto left = faces_where(a, [](const Vec3& c) { return c.x() < -0.9; });
-  const VoxelSet keep = rasterize(a, left, grid, 1), none(grid.count());
-  const JointVoxels voxels = join(grid, va, vb, keep, none);
+  const cut::VoxelSet keep = cut::rasterize(a, left, grid, 1), none(grid.count());
+  const cut::JointVoxels voxels = cut::join(grid, va, vb, keep, none);
   long both = 0;
   for (int n = 0; n < voxels.size(); ++n) {
     const std::size_t c = voxels.cells[n];
-    EXPECT_EQ((voxels.flags[n] & kHasA) != 0, va.has(c));
-    EXPECT_EQ((voxels.flags[n] & kHasB) != 0, vb.has(c));
-    EXPECT_EQ((voxels.flags[n] & kKeepA) != 0, keep.has(c));
-    EXPECT_FALSE(voxels.flags[n] & kKeepB);
+    EXPECT_EQ((voxels.flags[n] & cut::kHasA) != 0, va.has(c));
+    EXPECT_EQ((voxels.flags[n] & cut::kHasB) != 0, vb.has(c));
+    EXPECT_EQ((voxels.flags[n] & cut::kKeepA) != 0, keep.has(c));
+    EXPECT_FALSE(voxels.flags[n] & cut::kKeepB);
     const auto cell = grid.cell(c);
     EXPECT_EQ(voxels.at(cell[0], cell[1], cell[2]), n);
     both += voxels.both(n);
