@@ -141,6 +141,16 @@ void flip_orientation(Mesh& mesh) {
   for (Eigen::Vector3f& n : mesh.vertex_normal) n = -n;
 }
 
+Mesh transformed(Mesh mesh, const Eigen::Affine3d& map) {
+  const Eigen::Matrix3d m = map.linear();
+  Eigen::Matrix3d cofactors;  // they transform area vectors, also where the map has no inverse
+  for (int c = 0; c < 3; ++c) cofactors.col(c) = m.col((c + 1) % 3).cross(m.col((c + 2) % 3));
+  for (Vec3& v : mesh.vertices) v = map * v;
+  for (Eigen::Vector3f& n : mesh.vertex_normal) n = (cofactors * n.cast<double>()).stableNormalized().cast<float>();
+  if (m.determinant() < 0) flip_orientation(mesh);
+  return mesh;
+}
+
 void update_normals(Mesh& mesh) {
   std::vector<Vec3> sum(mesh.vertices.size(), Vec3::Zero());
   for (int f = 0; f < mesh.face_count(); ++f) {

@@ -30,6 +30,9 @@ void append(Mesh& to, const Mesh& from);
 /// Turns every face over.
 void flip_orientation(Mesh& mesh);
 
+/// The mesh moved: vertices, normals, and faces turned over where the map mirrors.
+Mesh transformed(Mesh mesh, const Eigen::Affine3d& map);
+
 /// Area-weighted vertex normals from the faces.
 void update_normals(Mesh& mesh);
 

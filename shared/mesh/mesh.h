@@ -42,6 +42,13 @@ struct Mesh {
   int vertex_count() const { return int(vertices.size()); }
   int face_count() const { return int(faces.size()); }
   const Vec3& corner(int face, int k) const { return vertices[faces[face][k]]; }
+  /// Along the face's normal, twice its area long.
+  Vec3 area_vector(int face) const {
+    return (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
+  }
+  Vec3 normal(int face) const { return area_vector(face).normalized(); }  ///< zero of a face without area
+  double area(int face) const { return 0.5 * area_vector(face).norm(); }
+  Vec3 center(int face) const { return (corner(face, 0) + corner(face, 1) + corner(face, 2)) / 3; }
   Box face_box(int face) const {
     Box b(corner(face, 0));
     return b.extend(corner(face, 1)).extend(corner(face, 2));
