@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "parts/mesh/ears.h"
+
 namespace parts::io::formats {
 
 double Scanner::to_number(std::string_view word) {
@@ -26,70 +28,10 @@ long Scanner::to_integer(std::string_view word) {
   return long(value);
 }
 
-namespace {
-
-using Vec2 = Eigen::Vector2d;
-
-/// The polygon seen along its normal, counter-clockwise; empty if it is flat.
-std::vector<Vec2> seen_from_above(const std::vector<Vec3>& vertices, const std::vector<int>& polygon) {
-  Vec3 normal = Vec3::Zero();  // Newell's
-  const Vec3& origin = vertices[polygon[0]];
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    normal += (vertices[polygon[i]] - origin).cross(vertices[polygon[(i + 1) % polygon.size()]] - origin);
-  int axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
-  if (!(std::abs(normal[axis]) > 0) || !std::isfinite(normal[axis])) return {};
-  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-  std::vector<Vec2> points;
-  for (int v : polygon) {
-    const Vec3 p = vertices[v] - origin;
-    points.push_back(normal[axis] > 0 ? Vec2(p[x], p[y]) : Vec2(p[y], p[x]));
-  }
-  return points;
-}
-
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-bool is_ear(const std::vector<Vec2>& points, const std::vector<int>& left, int a, int b, int c) {
-  if (!(turn(points[a], points[b], points[c]) > 0)) return false;
-  for (int i : left)
-    if (i != a && i != b && i != c && turn(points[a], points[b], points[i]) >= 0 &&
-        turn(points[b], points[c], points[i]) >= 0 && turn(points[c], points[a], points[i]) >= 0)
-      return false;
-  return true;
-}
-
-}  // namespace
-
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<int>& polygon) {
-  constexpr int kTooManyForEars = 1000;  // their cost is quadratic
-  const int n = int(polygon.size());
-  std::vector<Triangle> triangles;
-  std::vector<Vec2> points;
-  if (n > 3 && n <= kTooManyForEars) points = seen_from_above(vertices, polygon);
-  std::vector<int> left(n);
-  for (int i = 0; i < n; ++i) left[i] = i;
-  if (n == 4 && !points.empty()) {  // the shorter diagonal, where both lie inside
-    const bool even = turn(points[0], points[1], points[2]) > 0 && turn(points[0], points[2], points[3]) > 0;
-    const bool odd = turn(points[0], points[1], points[3]) > 0 && turn(points[1], points[2], points[3]) > 0;
-    const auto length = [&](int i, int j) { return (vertices[polygon[i]] - vertices[polygon[j]]).norm(); };
-    if (odd && (!even || length(1, 3) < length(0, 2))) return {{0, 1, 3}, {1, 2, 3}};
-  }
-  for (int i = 0, tried = 0; !points.empty() && left.size() > 3 && tried < int(left.size());) {
-    const int m = int(left.size()), a = left[i % m], b = left[(i + 1) % m], c = left[(i + 2) % m];
-    if (is_ear(points, left, a, b, c)) {
-      triangles.push_back({a, b, c});
-      left.erase(left.begin() + (i + 1) % m);
-      tried = 0;
-    } else {
-      ++tried;
-    }
-    i = (i + 1) % int(left.size());
-  }
-  for (std::size_t i = 1; i + 1 < left.size(); ++i) triangles.push_back({left[0], left[i], left[i + 1]});
-  return triangles;
+  std::vector<Vec3> corners;
+  for (int v : polygon) corners.push_back(vertices[v]);
+  return mesh::cut_ears(corners);
 }
 
 bool fits_floats(const Mesh& mesh) {

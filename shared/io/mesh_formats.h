@@ -39,8 +39,7 @@ struct ObjText {
 };
 ObjText format_obj(const Mesh& mesh, const std::string& material_file);
 
-/// Cuts a polygon (vertex indices in order) into triangles of positions in
-/// `polygon`; concave ones by their ears, crossed or flat ones as a fan.
+/// Cuts a polygon (vertex indices in order) into triangles of positions in `polygon`.
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<int>& polygon);
 
 /// Walks text by numbers and words, whatever the line ends and the locale.

@@ -27,8 +27,7 @@ std::vector<signed char> free_faces(const Mesh& mesh) { return std::vector<signe
 
 double area(const Mesh& mesh) {
   double sum = 0;
-  for (int f = 0; f < mesh.face_count(); ++f)
-    sum += 0.5 * (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).norm();
+  for (int f = 0; f < mesh.face_count(); ++f) sum += mesh.area(f);
   return sum;
 }
 
