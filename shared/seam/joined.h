@@ -16,17 +16,25 @@ struct Joined {
   std::vector<char> seam;    ///< per vertex: SeamSide, made by the cut
   std::vector<char> fixed;   ///< per vertex: of a kept face
   std::vector<int> like;     ///< per vertex: a face at it
-  std::vector<char> closed;  ///< per vertex: its input component had no boundary
+  std::vector<char> closed;  ///< per vertex: a contour that the cut made all around at such vertices is capped
+  /// The contours to be stitched. Of an open model they may run on along the
+  /// border that it had; chains, open at both ends, are stitched as well.
   std::vector<mesh::Loop> loops_a, loops_b;
+  std::vector<mesh::Loop> own_a, own_b;  ///< borders that the models had; may be joined to what is cut of the other
+  std::vector<std::array<int, 2>> own;   ///< half-edges of loops_a and loops_b that were the inputs' border, sorted
+  bool may_turn_b = true;                ///< B may be turned over, if the seam says so
 };
 
 /// Puts the clipped models side by side.
 Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, const Clipped& cb);
 
 /// Zippers borders that face each other, no farther apart than max_gap, turning
-/// B over first if it faces the other way; closes what remains of models that
-/// were closed. Fills the report's seam and loops. @return the length of
-/// borders that faced none, world units
+/// B over first if it faces the other way: whole contours, then pieces of them,
+/// then what is left to the other model's own border. What the cut made all
+/// around and nothing faces is capped; pieces that it cut off and that join
+/// nothing go, if they are small and nothing of them is kept. Fills the
+/// report's seam and loops.
+/// @return the length of borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 
 /// Removes the seam's slivers, evens it (Refined), smooths it, parts faces that

@@ -77,7 +77,7 @@ bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
     if (t[0] == except || t[1] == except || t[2] == except) continue;
     std::array<Vec3, 3> p;
     for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? to : mesh_.vertices[t[k]];
-    const Vec3 before = area_normal(mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2));
+    const Vec3 before = mesh_.area_vector(f);
     const Vec3 after = area_normal(p[0], p[1], p[2]);
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (p[k] - p[(k + 1) % 3]).squaredNorm());

@@ -21,6 +21,7 @@ struct SeamReport {
   double seam_gap = 0;     ///< mean distance between the borders before stitching, world units
   int loops_a = 0, loops_b = 0, loops_joined = 0, loops_capped = 0, loops_open = 0;
   int pieces_joined = 0;    ///< strips between borders that do not pair off one to one
+  int pieces_dropped = 0;   ///< small ones that the cut severed and nothing was joined to
   bool reversed_b = false;  ///< B's faces were turned to agree with A's
 };
 

@@ -124,9 +124,6 @@ double direction_agreement(const Mesh& mesh, const mesh::Loop& a, const mesh::Lo
   return sum / kStarts;
 }
 
-namespace {
-
-/// Zippers two polylines that run the same way.
 void zipper_lines(Mesh& mesh, const std::vector<int>& p, const std::vector<int>& q, const std::vector<int>& like) {
   int i = 0, j = 0;
   for (const char p_advances : shortest_strip(mesh, p, q)) {
@@ -140,132 +137,11 @@ void zipper_lines(Mesh& mesh, const std::vector<int>& p, const std::vector<int>&
   }
 }
 
-/// A vertex on one of several contours.
-struct Place {
-  int loop, at;
-};
-
-std::vector<Place> places(const std::vector<mesh::Loop>& loops) {
-  std::vector<Place> all;
-  for (int l = 0; l < int(loops.size()); ++l)
-    for (int k = 0; k < loops[l].size(); ++k) all.push_back({l, k});
-  return all;
-}
-
-/// The contour's vertices from place `from` on to place `to` (once around if they are the same).
-std::vector<int> arc(const mesh::Loop& loop, int from, int to) {
-  std::vector<int> v{loop.vertices[from]};
-  do {
-    from = (from + 1) % loop.size();
-    v.push_back(loop.vertices[from]);
-  } while (from != to);
-  return v;
-}
-
-}  // namespace
-
 void zipper(Mesh& mesh, const mesh::Loop& a, const mesh::Loop& b, const std::vector<int>& like) {
   mesh::Loop back = b;
   std::reverse(back.vertices.begin(), back.vertices.end());
   const auto [i, j] = nearest_pair(mesh, a.vertices, back.vertices);
   zipper_lines(mesh, unrolled(a, i), unrolled(back, j), like);
-}
-
-ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<mesh::Loop>& a, const std::vector<mesh::Loop>& b,
-                             double max_gap, const std::vector<int>& like) {
-  const std::vector<Place> in_a = places(a), in_b = places(b);
-  const auto nearest = [&](const std::vector<Place>& from, const std::vector<mesh::Loop>& from_loops,
-                           const std::vector<Place>& to, const std::vector<mesh::Loop>& to_loops) {
-    std::vector<int> found;
-    for (const Place& p : from) {
-      const Vec3& x = mesh.vertices[from_loops[p.loop].vertices[p.at]];
-      double least = max_gap * max_gap;
-      int best = -1;
-      for (int k = 0; k < int(to.size()); ++k)
-        if (const double d = (mesh.vertices[to_loops[to[k].loop].vertices[to[k].at]] - x).squaredNorm(); d < least)
-          least = d, best = k;
-      found.push_back(best);
-    }
-    return found;
-  };
-  const std::vector<int> to_b = nearest(in_a, a, in_b, b), to_a = nearest(in_b, b, in_a, a);
-  const auto bridged_a = [&](int k) { return to_b[k] >= 0 && to_a[to_b[k]] == k; };
-  const auto bridged_b = [&](int k) { return to_a[k] >= 0 && to_b[to_a[k]] == k; };
-  // The next bridge along a contour; places of one contour are consecutive.
-  const auto next_bridge = [](const std::vector<Place>& all, const std::vector<mesh::Loop>& loops, int k,
-                              const auto& bridged) {
-    const int size = loops[all[k].loop].size(), first = k - all[k].at;
-    int at = all[k].at;
-    do at = (at + 1) % size;
-    while (!bridged(first + at));
-    return first + at;
-  };
-
-  ZipperedPieces pieces;
-  std::vector<std::array<int, 2>> open;  // half-edges that faces have no opposite for
-  std::vector<char> filled_a(in_a.size(), 0), filled_b(in_b.size(), 0), starts(in_a.size(), 0), ends(in_a.size(), 0);
-  for (int k = 0; k < int(in_a.size()); ++k) {
-    if (!bridged_a(k)) continue;
-    const mesh::Loop &la = a[in_a[k].loop], &lb = b[in_b[to_b[k]].loop];
-    if (!la.closed || !lb.closed) continue;
-    const int next = next_bridge(in_a, a, k, bridged_a);
-    if (next_bridge(in_b, b, to_b[next], bridged_b) != to_b[k]) continue;
-    const std::vector<int> p = arc(la, in_a[k].at, in_a[next].at);
-    std::vector<int> q = arc(lb, in_b[to_b[next]].at, in_b[to_b[k]].at);
-    for (std::size_t s = 0, at = in_a[k].at; s + 1 < p.size(); ++s, at = (at + 1) % la.size())
-      filled_a[k - in_a[k].at + at] = 1;
-    for (std::size_t s = 0, at = in_b[to_b[next]].at; s + 1 < q.size(); ++s, at = (at + 1) % lb.size())
-      filled_b[to_b[next] - in_b[to_b[next]].at + at] = 1;
-    std::reverse(q.begin(), q.end());
-    zipper_lines(mesh, p, q, like);
-    ++pieces.strips, pieces.length += mesh::loop_length(mesh, {p, false});
-    starts[k] = 1, ends[next] = 1;
-  }
-  const auto leave_open = [&](const std::vector<Place>& all, const std::vector<mesh::Loop>& loops,
-                              const std::vector<char>& filled) {
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const mesh::Loop& l = loops[all[k].loop];
-      if (filled[k] || (!l.closed && all[k].at + 1 == l.size())) continue;
-      open.push_back({l.vertices[all[k].at], l.vertices[(all[k].at + 1) % l.size()]});
-    }
-  };
-  leave_open(in_a, a, filled_a), leave_open(in_b, b, filled_b);
-  for (std::size_t k = 0; k < in_a.size(); ++k) {
-    if (starts[k] == ends[k]) continue;
-    const int va = a[in_a[k].loop].vertices[in_a[k].at], vb = b[in_b[to_b[k]].loop].vertices[in_b[to_b[k]].at];
-    open.push_back(starts[k] ? std::array<int, 2>{va, vb} : std::array<int, 2>{vb, va});
-  }
-  pieces.open = mesh::trace_loops(open);
-  return pieces;
-}
-
-void cap(Mesh& mesh, const mesh::Loop& loop, const std::vector<int>& like) {
-  std::vector<int> ring = loop.vertices;
-  // The area vector's direction says which ears are convex.
-  Vec3 up = Vec3::Zero();
-  for (std::size_t k = 0; k < ring.size(); ++k)
-    up += (mesh.vertices[ring[k]] - mesh.vertices[ring[0]])
-              .cross(mesh.vertices[ring[(k + 1) % ring.size()]] - mesh.vertices[ring[0]]);
-  up.normalize();
-  while (ring.size() > 3) {
-    const int n = int(ring.size());
-    int ear = 0;
-    double best = -1e300;
-    for (int k = 0; k < n; ++k) {
-      const Vec3 &u = mesh.vertices[ring[(k + n - 1) % n]], &v = mesh.vertices[ring[k]],
-                 &w = mesh.vertices[ring[(k + 1) % n]];
-      const Vec3 e = u - v, f = w - v;
-      const double lengths = e.norm() * f.norm();
-      const double turn = lengths > 0 ? f.cross(e).dot(up) / lengths : 0;
-      // Convex and sharp first: the chord that replaces the corner is short.
-      const double score = (turn >= 0 ? 1 : -1) - (u - w).norm() / (e.norm() + f.norm() + 1e-300);
-      if (score > best) best = score, ear = k;
-    }
-    const int u = ring[(ear + n - 1) % n], v = ring[ear], w = ring[(ear + 1) % n];
-    mesh::add_face_like(mesh, like[v], {w, v, u});
-    ring.erase(ring.begin() + ear);
-  }
-  if (ring.size() == 3) mesh::add_face_like(mesh, like[ring[0]], {ring[2], ring[1], ring[0]});
 }
 
 }  // namespace parts::seam

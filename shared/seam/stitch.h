@@ -16,20 +16,8 @@ double direction_agreement(const Mesh& mesh, const mesh::Loop& a, const mesh::Lo
 /// mesh, dressed as face like[v] of the nearest contour vertex v.
 void zipper(Mesh& mesh, const mesh::Loop& a, const mesh::Loop& b, const std::vector<int>& like);
 
-struct ZipperedPieces {
-  std::vector<mesh::Loop> open;  ///< contours that are left, of a's, b's and bridges' half-edges
-  int strips = 0;                ///< pieces that were zippered
-  double length = 0;             ///< of a's part in them, world units
-};
-
-/// Zippers contours piece by piece where they do not pair off one to one (two
-/// of a facing one of b): bridges between mutually nearest vertices, no longer
-/// than max_gap, part them into pieces, and facing pieces are zippered.
-ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<mesh::Loop>& a, const std::vector<mesh::Loop>& b,
-                             double max_gap, const std::vector<int>& like);
-
-/// Closes a contour with triangles between its own vertices, ear by ear, the
-/// best-shaped first.
-void cap(Mesh& mesh, const mesh::Loop& loop, const std::vector<int>& like);
+/// The same between two polylines of vertices that run the same way, p's
+/// half-edges along it and q's against it, from first vertices to last.
+void zipper_lines(Mesh& mesh, const std::vector<int>& p, const std::vector<int>& q, const std::vector<int>& like);
 
 }  // namespace parts::seam

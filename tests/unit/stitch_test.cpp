@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/seam/stitch.h"
 
+#include "parts/seam/cap.h"
+#include "parts/seam/pieces.h"
 #include "unit/compose_support.h"
 
 namespace parts::test {
