@@ -21,6 +21,12 @@ using host::Outcome;
 using host::smoothing_of;
 using host::surface_of;
 
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
 /// What the three filters have in common.
 mend::MendOptions query_options(const Inputs& inputs) {
   mend::MendOptions o;
@@ -29,6 +35,7 @@ mend::MendOptions query_options(const Inputs& inputs) {
   o.region.box.min() = inputs.point("RegionMin"), o.region.box.max() = inputs.point("RegionMax");
   o.region.margin = inputs.length("Margin");
   o.region.longest_rim = inputs.length("LongestRim");
+  o.region.largest_hole = inputs.integer("LargestHole");
   o.region.leave_selected = inputs.flag("LeaveSelected");
   o.search.candidates = inputs.integer("Candidates");
   o.search.levels = inputs.integer("Levels");
@@ -44,13 +51,67 @@ io::ModelDatabase database_of(const Inputs& inputs, Progress& progress) {
   return io::ModelDatabase(path, progress);
 }
 
+void log_candidate(int rank, const std::string& name, double score, Progress& progress) {
+  progress.log("candidate_" + std::to_string(rank) + ": " + name + " " + number(score));
+}
+
+void log_found(const std::vector<mend::Found>& found, Progress& progress) {
+  const int regions = found.empty() ? 0 : found.back().region + 1;
+  int rank = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const mend::Found& f = found[i];
+    if (i == 0 || f.region != found[i - 1].region) {
+      progress.log("region: " + std::to_string(f.region + 1) + "/" + std::to_string(regions));
+      rank = 0;
+    }
+    log_candidate(++rank, f.name, f.score, progress);
+  }
+}
+
+void log_restored(const mend::RegionReport& region, Progress& progress) {
+  const mend::RestoreReport& r = region.restored;
+  progress.log("model: " + region.candidates[std::size_t(r.model)].name);
+  const auto log = [&](const char* name, double value) { log_value(progress, name, value); };
+  log("blended", r.blended);
+  log("rms_before", r.rms_before), log("rms_after", r.rms_after), log("inlier_share", r.inlier_share);
+  log("faces_replaced", r.faces_replaced), log("faces_added", r.faces_added);
+  log("rims_joined", r.rims_joined), log("borders_capped", r.borders_capped);
+  log("islands_dropped", r.islands_dropped);
+  log("seam_length", r.seam_length), log("seam_gap", r.seam_gap);
+}
+
+/// Each region, then what is as it was and why, and the whole in words.
+void log_mended(const mend::Mended& mended, bool fill, Progress& progress) {
+  using End = mend::RegionReport::End;
+  const int small = mended.count(End::Small), searched = int(mended.regions.size()) - small;
+  if (small) log_value(progress, "closed_small", small);
+  int number_of = 0, left = 0;
+  std::string reasons;
+  for (const mend::RegionReport& region : mended.regions) {
+    if (region.end == End::Small) continue;
+    progress.log("region: " + std::to_string(++number_of) + "/" + std::to_string(searched));
+    for (std::size_t i = 0; i < region.candidates.size(); ++i)
+      log_candidate(int(i) + 1, region.candidates[i].name, region.candidates[i].score, progress);
+    if (region.not_meant) log_value(progress, "selected_behind", region.not_meant);
+    if (region.end == End::WithOthers) progress.log("mended_before: 1");
+    if (region.end == End::Mended) log_restored(region, progress);
+    if (region.end != End::Left) continue;
+    progress.log("left_as_it_was: " + region.left_because);
+    reasons += (left++ ? "; " : "") + std::to_string(number_of) + ": " +
+               region.left_because.substr(0, region.left_because.find(';'));
+  }
+  progress.log("left_open: " + std::to_string(left) + (left ? " (" + reasons + ")" : ""));
+  progress.log(mend::summary(mended, fill));
+}
+
 Outcome find(const Inputs& inputs, Progress& progress) {
   const Layer layer = inputs.layer("Mesh");
   const Mesh scan = surface_of(layer);
   mend::MendOptions options = query_options(inputs);
-  options.fill = options.region.by == mend::RegionBy::Holes;
+  options.fill = options.region.by == mend::RegionBy::Holes;  // with Selected or all: flaws where any are selected
   const io::ModelDatabase database = database_of(inputs, progress);
   std::vector<mend::Found> found = mend::find_models(scan, database, options, progress);
+  log_found(found, progress);
   Outcome outcome;
   const bool several = !found.empty() && found.back().region > 0;
   for (mend::Found& f : found) {
@@ -69,19 +130,21 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   options.fill = fill;
   mend::RestoreOptions& o = options.restore;
   o.constraint_distance = inputs.number("ConstraintDistance");
-  o.refine = inputs.flag("Refine");
-  o.allow_scale = inputs.flag("AllowScale");
+  o.fitting.refine = inputs.flag("Refine");
+  o.fitting.allow_scale = inputs.flag("AllowScale");
   o.resolution = inputs.integer("Resolution");
   o.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Refined;
   o.smoothing = smoothing_of(inputs);
-  o.fit_to_rim = inputs.flag("FitToRim");
-  o.blend = inputs.integer("Blend");
+  o.fitting.fit_to_rim = inputs.flag("FitToRim");
+  o.fitting.blend = inputs.integer("Blend");
+  o.match_color = inputs.flag("MatchColour");
   const bool add_candidate = inputs.flag("AddCandidate");
   const io::ModelDatabase database = database_of(inputs, progress);
 
   mend::Mended mended = mend::mend_scan(scan, database, options, progress);
-  log_value(progress, "regions", mended.regions);
-  log_value(progress, "mended", mended.mended);
+  log_mended(mended, fill, progress);
+  log_value(progress, "regions", double(mended.regions.size()));
+  log_value(progress, "mended", double(mended.regions.size()) - mended.count(mend::RegionReport::End::Left));
   log_value(progress, "faces", mended.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
@@ -116,9 +179,9 @@ std::vector<host::Filter> host::filters() {
            composition_reference,
        restore_parameters, restore},
       {"Database: Fill Hole", "fill_hole", Menu::Remeshing,
-       std::string("Fills holes with surfaces of complete models of the same kind: a face gets a nose, not a lid. All "
-                   "holes are filled, each from its own best match, or those beside the selected faces or in a box. "
-                   "The scan stays as it is, to the rim.") +
+       std::string("Fills holes with surfaces of complete models of the same kind: a face gets a nose, not a lid. The "
+                   "holes beside the selected faces are filled, or all where none is selected, each from its own best "
+                   "match; or those in a box. The scan stays as it is, to the rim; the new faces are selected.") +
            composition_reference,
        fill_parameters, fill},
   };

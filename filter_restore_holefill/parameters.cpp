@@ -24,9 +24,11 @@ std::vector<Parameter> query(const Scene& scene, mend::RegionBy by, int candidat
                            "Complete models of the same kind: a MeshLab project (.mlp), or a folder of .ply, .obj, "
                            ".off and .stl files (in the dialog choose any file in it, in scripts the folder). What the "
                            "search computes is kept beside it for the next time."));
-  list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box"}, "Where",
+  list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box", "Selected or all"},
+                        "Where",
                         "Around the selection: the selected faces are the flaws, or lie beside the holes. Around all "
-                        "holes: each open border by itself. Box: what the box below holds."));
+                        "holes: each open border by itself. Box: what the box below holds. Selected or all: the "
+                        "selection where there is one, else all holes."));
   add_box("Region", "Where", scene.current, list);
   list.push_back(length("Margin", 0, "Good surface around it",
                         "How far the region reaches beyond the flaw or the hole, in the units of the scan; around a "
@@ -47,8 +49,10 @@ void add_search(std::vector<Parameter>& list) {
                       "Tries every rotation of the models. Without it only rotations of up to about 30 degrees, which "
                       "is quicker and safer where scan and models share a frame."));
   list.push_back(length("LongestRim", region.longest_rim, "Longest rim",
-                        "With Around all holes: borders longer than this stay open, as a neck or a base is meant to "
+                        "Of all holes, those with a border longer than this stay open, as a neck or a base is meant to "
                         "be. 0 fills all."));
+  list.push_back(integer("LargestHole", region.largest_hole, 0, 100000000, "Largest hole (edges)",
+                         "Of all holes, those with more edges at their border stay open. 0 fills all."));
   list.push_back(flag("LeaveSelected", region.leave_selected, "Leave holes with selected faces",
                       "With Around all holes: holes with a selected face at their rim stay open."));
 }
@@ -56,16 +60,16 @@ void add_search(std::vector<Parameter>& list) {
 std::vector<Parameter> mend_parameters(const Scene& scene, bool fill) {
   const mend::RestoreOptions o;
   std::vector<Parameter> list =
-      query(scene, fill ? mend::RegionBy::Holes : mend::RegionBy::Selection, mend::RestoreOptions().tries,
-            "Of so many of the most similar models, the first that closes what is open is the base.");
+      query(scene, fill ? mend::RegionBy::SelectedOrAll : mend::RegionBy::Selection, mend::RestoreOptions().tries,
+            "Of so many of the most similar models, the first that closes what is open, and cleanly, is the base.");
   list.push_back(number("ConstraintDistance", o.constraint_distance, 0.01, 0.99, "Constraint distance",
                         "How much is certain to stay, and to be replaced: a share of the region's half size (flaws), "
                         "or of the largest distance of the model from the scan (holes, with the cut of the "
                         "thesis; otherwise the rim of a hole is the border). The cut finds the rest; results hardly "
                         "depend on it."));
-  list.push_back(flag("Refine", o.refine, "Refine the placement",
+  list.push_back(flag("Refine", o.fitting.refine, "Refine the placement",
                       "Places the models once more by iterated closest points on the surface around the region."));
-  list.push_back(allow_scale(o.allow_scale));
+  list.push_back(allow_scale(o.fitting.allow_scale));
   list.push_back(integer("Resolution", o.resolution, 0, 100000, "Resolution (voxels)",
                          "Of the cut Thesis: voxels along the longest side of the region. 0 chooses from the meshes "
                          "and the free memory."));
@@ -76,14 +80,17 @@ std::vector<Parameter> mend_parameters(const Scene& scene, bool fill) {
   add_smoothing("two edges of the rim (two voxels with the cut Thesis)", list);
   list.push_back(flag("AddCandidate", false, "Add the model that was used",
                       "Adds the model that each region was mended with, as it was placed and fitted, hidden."));
-  list.push_back(flag("FitToRim", o.fit_to_rim, "Fit the model to the scan",
+  list.push_back(flag("FitToRim", o.fitting.fit_to_rim, "Fit the model to the scan",
                       "Bends the model smoothly until it meets the surface around the flaw or hole, its details kept. "
                       "Without it the model is pasted as it is, as in the thesis."));
   list.push_back(
-      integer("Blend", o.blend, 1, 1000, "Blend so many models",
+      integer("Blend", o.fitting.blend, 1, 1000, "Blend so many models",
               "Of so many of the most similar models, the likeliest mixture for the surface around the flaw or hole "
               "is taken. 1 takes the best alone, as in the thesis; quicker."));
   add_search(list);
+  list.push_back(flag("MatchColour", o.match_color, "Match the scan's colours",
+                      "Where the scan has vertex colours, the patch's go on from those at its rim. Without it the "
+                      "patch has the model's."));
   return list;
 }
 

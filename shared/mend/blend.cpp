@@ -25,7 +25,7 @@ std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, 
   // In bands of the cores, so that cancelling waits for one band only.
   const int band = thread_count(threads);
   for (int first = 0; first < others; first += band) {
-    progress.at(0.4 + 0.5 * first / others);
+    progress.at(0.8 * first / others);
     parallel_for(std::min(band, others - first), threads, [&](long begin, long end) {
       for (long i = first + begin + 1; i < first + end + 1; ++i) {
         Progress silent;
@@ -106,7 +106,7 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
   out.vertices = prior.mean();
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
-    progress.at(0.9 + 0.1 * round / kRounds);
+    progress.at(0.8 + 0.2 * round / kRounds);
     const Targets targets = match(out.vertices, 0.25 * target.size(), 1, kAlike * target.size());
     const std::vector<PlaneObservation> seen = seen_on(out.vertices, targets, target);
     if (seen.empty()) break;

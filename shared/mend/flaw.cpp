@@ -13,8 +13,6 @@
 namespace parts::mend {
 namespace {
 
-Vec3 center_of(const Mesh& m, int f) { return (m.corner(f, 0) + m.corner(f, 1) + m.corner(f, 2)) / 3; }
-
 /// How close a point of the region is to those of its sides that the surface
 /// goes through: 0 on a side, 1 at the centre.
 class Depth {
@@ -119,20 +117,20 @@ void leave_no_pinch(const Mesh& scan, const std::vector<char>& keep, std::vector
 
 }  // namespace
 
-FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double share) {
-  FlawConstraints c{std::vector<char>(scan.faces.size(), 0), region.flaw, region.flaw};
+FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, const std::vector<char>& flaw, double share) {
+  FlawConstraints c{std::vector<char>(scan.faces.size(), 0), flaw, flaw};
   const Depth depth(scan, region.box);
-  const bool known = !region.flaw.empty();
+  const bool known = !flaw.empty();
   c.flaw.resize(scan.faces.size(), 0), c.suspect.resize(scan.faces.size(), 0);
   const Vec3 center = region.box.center(), half = region.box.sizes() / 2;
   std::vector<double> away(scan.faces.size(), 1e300);  // from the centre
   double least = 1e300;
   for (int f = 0; f < scan.face_count(); ++f) {
     const bool inside = region.box.contains(scan.face_box(f));
-    c.keep[f] = !(known && region.flaw[f]) && (!inside || depth(center_of(scan, f)) < share);
+    c.keep[f] = !(known && flaw[f]) && (!inside || depth(scan.center(f)) < share);
     if (!inside || known) continue;
     c.suspect[f] = !c.keep[f];
-    away[f] = (center_of(scan, f) - center).cwiseQuotient(half).norm();
+    away[f] = (scan.center(f) - center).cwiseQuotient(half).norm();
     least = std::min(least, away[f]);
   }
   if (known) return c;

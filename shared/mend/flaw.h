@@ -11,8 +11,9 @@ struct FlawConstraints {
   std::vector<char> flaw;     ///< must be replaced: selected; with a box nearest its centre
   std::vector<char> suspect;  ///< is not to be believed: selected; with a box all of it but what is kept
 };
+/// @param flaw   flaw_flags() of the region
 /// @param share  ConstraintDistance: of the region's half size, (0, 1)
-FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, double share);
+FlawConstraints flaw_constraints(const Mesh& scan, const Region& region, const std::vector<char>& flaw, double share);
 
 /// Which faces of a scan give way to a fitted model: the minimal cut, on the
 /// faces themselves, between what must survive and what must be replaced. It

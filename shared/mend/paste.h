@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "parts/mend/region.h"
+#include "parts/mend/scan.h"
 #include "parts/seam/seam.h"
 
 namespace parts::mend {
@@ -14,9 +14,10 @@ struct PasteOptions {
 };
 
 struct Pasted {
-  bool closed = false;  ///< the hole is gone and nothing new is open or non-manifold
+  bool reached = false;  ///< the model has surface that continues the scan at the rim
+  bool closed = false;   ///< the hole is gone and nothing new is open or non-manifold
   Mesh mesh;
-  std::vector<char> face_from_model;        ///< per face: 0 the scan's, 1 the model's, 2 made by the stitch
+  std::vector<int> source;                  ///< per face: its number in the scan, or a NewFace
   int joined = 0, capped = 0, islands = 0;  ///< rims joined, borders closed, loose pieces in the hole dropped
   long crossings = 0;                       ///< pairs of faces at the seam that cross
   double seam_length = 0, seam_gap = 0;     ///< world units
@@ -28,7 +29,7 @@ struct Pasted {
 /// Rims of other holes that the same part of the model reaches are joined too.
 /// @param scan  prepared: welded, its faces oriented
 /// @param model fitted to the scan, welded, faces oriented as the scan's
-/// @param rim   the hole: closed, vertices in the faces' direction
+/// @param rim   the hole: of find_rims()
 Pasted paste(const Mesh& scan, const Mesh& model, const mesh::Loop& rim, const PasteOptions& options);
 
 }  // namespace parts::mend

@@ -51,8 +51,8 @@ std::vector<std::array<int, 2>> boundary_half_edges(const Mesh& mesh) {
 
 double loop_length(const Mesh& mesh, const Loop& loop) {
   double length = 0;
-  for (int i = 0; i + (loop.closed ? 0 : 1) < loop.size(); ++i)
-    length += (mesh.vertices[loop.vertices[(i + 1) % loop.size()]] - mesh.vertices[loop.vertices[i]]).norm();
+  for (int i = 0; i < loop.edges(); ++i)
+    length += (mesh.vertices[loop.next(i)] - mesh.vertices[loop.vertices[i]]).norm();
   return length;
 }
 

@@ -6,11 +6,16 @@
 namespace parts::mesh {
 
 /// A border contour: vertices in the direction of the faces' half-edges.
-/// Closed, or a chain that ends on a boundary that the input had.
+/// Closed, or a chain from its first vertex to its last: it ends on a boundary
+/// that the input had, or at an edge of more than two faces.
 struct Loop {
   std::vector<int> vertices;
   bool closed = true;
   int size() const { return int(vertices.size()); }
+  int edges() const { return size() - (closed ? 0 : 1); }
+  int next(int i) const { return vertices[(i + 1) % size()]; }  ///< the vertex after the i-th
+  std::vector<int>::const_iterator begin() const { return vertices.begin(); }
+  std::vector<int>::const_iterator end() const { return vertices.end(); }
 };
 
 /// Chains half-edges into contours. At a vertex where contours touch, the

@@ -29,6 +29,15 @@ std::vector<int> first_at_same_place(const Mesh& mesh) {
   return first;
 }
 
+Mesh welded(const Mesh& mesh) {
+  const std::vector<int> first = first_at_same_place(mesh);
+  Mesh w;
+  w.vertices = mesh.vertices;
+  w.faces.reserve(mesh.faces.size());
+  for (const Triangle& f : mesh.faces) w.faces.push_back({first[f[0]], first[f[1]], first[f[2]]});
+  return w;
+}
+
 namespace {
 
 /// Flags 1 for the faces that are triangles, each set of three vertices once.

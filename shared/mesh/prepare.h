@@ -5,8 +5,13 @@
 
 namespace parts::mesh {
 
-/// Per vertex: the first vertex with the same position, bit for bit.
+/// Per vertex: the first vertex with the same position, bit for bit; those that
+/// are not finite are by themselves.
 std::vector<int> first_at_same_place(const Mesh& mesh);
+
+/// The mesh with each face between the first vertices at its corners' places.
+/// Vertices and faces keep their numbers; attributes are left out.
+Mesh welded(const Mesh& mesh);
 
 /// A mesh made fit for cutting, and what had to be done to it.
 struct Prepared {

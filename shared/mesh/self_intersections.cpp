@@ -7,6 +7,7 @@
 
 #include "parts/base/parallel.h"
 #include "parts/mesh/predicates.h"
+#include "parts/mesh/prepare.h"
 
 namespace parts::mesh {
 namespace {
@@ -65,7 +66,7 @@ struct Faces {
   std::vector<Corners> points;
 
   explicit Faces(const Mesh& mesh) {
-    const std::vector<int> id = position_ids(mesh);
+    const std::vector<int> id = first_at_same_place(mesh);
     for (int f = 0; f < mesh.face_count(); ++f) {
       const Corners c{mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)};
       if (!c[0].allFinite() || !c[1].allFinite() || !c[2].allFinite() || collinear(c[0], c[1], c[2])) continue;
@@ -73,20 +74,6 @@ struct Faces {
       corners.push_back({id[mesh.faces[f][0]], id[mesh.faces[f][1]], id[mesh.faces[f][2]]});
       points.push_back(c);
     }
-  }
-
-  static std::vector<int> position_ids(const Mesh& mesh) {
-    std::vector<int> order(mesh.vertices.size()), id(order.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto less = [&](int a, int b) {
-      const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b];
-      return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-    };
-    const auto finite = std::partition(order.begin(), order.end(), [&](int v) { return mesh.vertices[v].allFinite(); });
-    std::sort(order.begin(), finite, less);
-    for (auto v = order.begin(); v != finite; ++v)
-      id[*v] = v != order.begin() && mesh.vertices[v[-1]] == mesh.vertices[*v] ? id[v[-1]] : *v;
-    return id;
   }
 
   bool intersect(int f, int g) const {

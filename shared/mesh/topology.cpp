@@ -54,38 +54,70 @@ std::vector<int> vertex_components(const Mesh& mesh) {
   return component;
 }
 
-std::vector<std::vector<int>> boundary_loops(const Mesh& mesh, const EdgeMap& map) {
-  std::vector<std::vector<int>> loops;
-  std::vector<char> seen(map.mate.size(), 0);
-  for (int start = 0; start < int(map.mate.size()); ++start) {
-    if (map.mate[start] != EdgeMap::kBoundary || seen[start]) continue;
-    loops.emplace_back();
-    int vertex = mesh.faces[start / 3][start % 3];
-    for (int h = start; h >= 0 && !seen[h];) {
-      seen[h] = 1;
-      loops.back().push_back(vertex);
-      const Triangle& f = mesh.faces[h / 3];
-      vertex = f[h % 3] == vertex ? f[(h % 3 + 1) % 3] : f[h % 3];
-      // Around that vertex, from face to face, to the border's next edge.
-      for (int side = h;;) {
-        const Triangle& g = mesh.faces[side / 3];
-        const int corner = corner_of(g, vertex);
-        const int other = side / 3 * 3 + (side % 3 == corner ? (corner + 2) % 3 : corner);
-        side = map.mate[other];
-        if (side < 0) {
-          h = side == EdgeMap::kBoundary ? other : -1;
-          break;
-        }
+namespace {
+
+/// Walks along a border, from face to face around its vertices.
+class BorderWalk {
+ public:
+  BorderWalk(const Mesh& mesh, const EdgeMap& map) : mesh_(mesh), map_(map), seen_(map.mate.size(), 0) {}
+
+  bool seen(int side) const { return seen_[side] != 0; }
+
+  /// From a border's side on, beginning with its vertex `from`: the vertices up
+  /// to and with the last. @return whether it came back to where it began
+  bool operator()(int start, int from, std::vector<int>& vertices) {
+    int vertex = from;
+    for (int side = start;;) {
+      seen_[side] = 1;
+      vertices.push_back(vertex);
+      const Triangle& f = mesh_.faces[side / 3];
+      vertex = f[side % 3] == vertex ? f[(side % 3 + 1) % 3] : f[side % 3];
+      side = next(side, vertex);
+      if (side == start) return true;
+      if (side < 0 || seen_[side]) {
+        vertices.push_back(vertex);
+        return false;
       }
     }
+  }
+
+ private:
+  /// The border's side that the fan around the vertex ends with, or kNonManifold.
+  int next(int side, int vertex) const {
+    for (;;) {
+      const int corner = corner_of(mesh_.faces[side / 3], vertex);
+      const int other = side / 3 * 3 + (side % 3 == corner ? (corner + 2) % 3 : corner);
+      side = map_.mate[other];
+      if (side < 0) return side == EdgeMap::kBoundary ? other : EdgeMap::kNonManifold;
+    }
+  }
+
+  const Mesh& mesh_;
+  const EdgeMap& map_;
+  std::vector<char> seen_;
+};
+
+}  // namespace
+
+std::vector<Loop> boundary_loops(const Mesh& mesh, const EdgeMap& map) {
+  std::vector<Loop> loops;
+  BorderWalk walk(mesh, map);
+  for (int start = 0; start < int(map.mate.size()); ++start) {
+    if (map.mate[start] != EdgeMap::kBoundary || walk.seen(start)) continue;
+    const Triangle& f = mesh.faces[start / 3];
+    Loop loop;
+    loop.closed = walk(start, f[start % 3], loop.vertices);
+    if (!loop.closed) {  // it began in the midst of a chain
+      std::vector<int> back;
+      walk(start, f[(start % 3 + 1) % 3], back);
+      loop.vertices.insert(loop.vertices.begin(), back.rbegin(), back.rend() - 2);
+    }
+    loops.push_back(std::move(loop));
   }
   return loops;
 }
 
-namespace {
-
-/// Vertices on a non-manifold edge, or whose faces make more than one fan.
-int count_nonmanifold_vertices(const Mesh& mesh, const EdgeMap& map) {
+std::vector<char> nonmanifold_vertices(const Mesh& mesh, const EdgeMap& map) {
   DisjointSets fans(int(map.mate.size()));  // of corners
   std::vector<char> bad(mesh.vertices.size(), 0);
   for (int h = 0; h < int(map.mate.size()); ++h) {
@@ -104,8 +136,10 @@ int count_nonmanifold_vertices(const Mesh& mesh, const EdgeMap& map) {
     if (fan[v] >= 0 && fan[v] != set) bad[v] = 1;
     fan[v] = set;
   }
-  return int(std::count(bad.begin(), bad.end(), 1));
+  return bad;
 }
+
+namespace {
 
 int count_components(const Mesh& mesh) {
   DisjointSets faces(mesh.face_count());
@@ -133,7 +167,8 @@ MeshCheck check(const Mesh& mesh) {
   c.nonmanifold_edges = map.nonmanifold_edges;
   c.inconsistent_edges = map.inconsistent_edges;
   c.boundary_loops = int(boundary_loops(mesh, map).size());
-  c.nonmanifold_vertices = count_nonmanifold_vertices(mesh, map);
+  const std::vector<char> bad = nonmanifold_vertices(mesh, map);
+  c.nonmanifold_vertices = int(std::count(bad.begin(), bad.end(), 1));
   c.components = count_components(mesh);
   std::vector<char> used(mesh.vertices.size(), 0);
   for (int f = 0; f < mesh.face_count(); ++f) {

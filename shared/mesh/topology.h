@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "parts/mesh/mesh.h"
+#include "parts/mesh/loops.h"
 
 namespace parts::mesh {
 
@@ -21,10 +21,13 @@ struct EdgeMap {
 };
 EdgeMap edge_map(const Mesh& mesh);
 
-/// The borders of the surface as vertices in the faces' order, each once around
-/// a hole. Where holes touch at a vertex a border follows the fan of faces that
-/// it bounds; one that ends at a non-manifold edge is given as far as it goes.
-std::vector<std::vector<int>> boundary_loops(const Mesh& mesh, const EdgeMap& map);
+/// The borders of the surface in the faces' order, each once around a hole.
+/// Where holes touch at a vertex a border follows the fan of faces that it
+/// bounds; one that ends at non-manifold edges is a chain.
+std::vector<Loop> boundary_loops(const Mesh& mesh, const EdgeMap& map);
+
+/// Per vertex, 1 = it lies on an edge of more than two faces, or its faces are not one fan.
+std::vector<char> nonmanifold_vertices(const Mesh& mesh, const EdgeMap& map);
 
 /// Per vertex a number of its component, faces joined by vertices; not in a row.
 std::vector<int> vertex_components(const Mesh& mesh);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "parts/base/error.h"
+#include "parts/mesh/prepare.h"
 #include "parts/mesh/topology.h"
 
 namespace parts::search {
@@ -27,28 +27,6 @@ std::vector<char> undamaged(const SearchQuery& query) {
   }
   if (std::find(flags.begin(), flags.end(), 1) == flags.end()) throw UserError(kNothingLeft);
   return flags;
-}
-
-/// The faces with vertices at the same place made one, or scans of loose
-/// triangles would be all border.
-Mesh welded(const Mesh& mesh) {
-  std::vector<int> order(mesh.vertices.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto less = [&](int a, int b) {
-    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b];
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-  };
-  order.erase(std::remove_if(order.begin(), order.end(), [&](int v) { return !mesh.vertices[v].allFinite(); }),
-              order.end());
-  std::sort(order.begin(), order.end(), less);
-  std::vector<int> first(mesh.vertices.size());
-  std::iota(first.begin(), first.end(), 0);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (!less(order[i - 1], order[i])) first[order[i]] = first[order[i - 1]];
-  Mesh w;
-  w.vertices = mesh.vertices;
-  for (const Triangle& f : mesh.faces) w.faces.push_back({first[f[0]], first[f[1]], first[f[2]]});
-  return w;
 }
 
 }  // namespace
@@ -121,7 +99,7 @@ void QuerySurface::make_grid(const SearchQuery& query) {
     const Eigen::Vector3f p = ((world - origin_) / size_).cast<float>();
     if (p.allFinite() && box.contains(p)) points_.push_back({p, Eigen::Vector3f::Zero()});
   };
-  const mesh::EdgeMap edges = mesh::edge_map(welded(mesh));
+  const mesh::EdgeMap edges = mesh::edge_map(mesh::welded(mesh));  // or scans of loose triangles would be all border
   for (int f = 0; f < mesh.face_count(); ++f) {
     const bool damaged = !query.face_weight.empty() && !(query.face_weight[f] > 0);
     for (int k = 0; k < 3; ++k) {

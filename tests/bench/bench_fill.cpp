@@ -142,10 +142,10 @@ Mesh Bench::mend(const MemberClass& members, std::size_t which, const DamageCase
   mend::MendOptions options;
   options.fill = what.kind == DamageCase::Hole;
   options.region = damaged.region;
-  if (const int blend = std::stoi(value("blend", "0")); blend > 0) options.restore.blend = blend;
+  if (const int blend = std::stoi(value("blend", "0")); blend > 0) options.restore.fitting.blend = blend;
   options.search.candidates = options.restore.tries;
-  options.restore.fit_to_rim = fit;
-  if (!fit) options.restore.blend = 1;
+  options.restore.fitting.fit_to_rim = fit;
+  if (!fit) options.restore.fitting.blend = 1;
   return mend::mend_scan(damaged.scan, database, options, silent).mesh;
 }
 

@@ -5,7 +5,7 @@ import numpy as np
 import lib
 import mend
 import shapes
-from lib import run, select_faces, template
+from lib import host_filter, run, select_faces, template
 
 BUSTS = mend.Busts()
 
@@ -30,6 +30,8 @@ class Fill(lib.MeshCase):
         self.assertEqual(figures["regions"], "1")
         self.assertEqual(figures["mended"], "1")
         self.assertEqual(int(figures["faces"]), len(mesh.f))
+        self.assertEqual(figures["left_open"], "0")
+        self.assertIn("1 of 1 hole filled.", result.text)
         self.assertIn("bust_", figures["model"])
         # A nose, not a lid: nearer to what was there than the hole's rim is.
         whole = BUSTS.mesh("whole")
@@ -48,6 +50,26 @@ class Fill(lib.MeshCase):
         steps = [select_faces("(" + beside + ")"),
                  template("fill_hole", Database=BUSTS.database, Region="Around the selection", **mend.MEND)]
         self.check(run([BUSTS.file("hole")], steps), scan)
+
+    def test_the_selected_hole_else_all(self):
+        """A second hole, at the crown; faces beside the nose are selected."""
+        def inside(box):
+            return " && ".join(f"({a}0 > {lo}) && ({a}0 < {hi})" for a, lo, hi in zip("xyz", *BUSTS.boxes[box]))
+        open_crown = [select_faces("(" + inside("crown") + ")"), host_filter("Delete Selected Faces")]
+        fill = template("fill_hole", Database=BUSTS.database, **mend.MEND)
+        selected = run([BUSTS.file("hole")], open_crown + [select_faces("(" + inside("hole") + ")"), fill])
+        self.assertSucceeded(selected)
+        self.assertEqual(selected.figures()["regions"], "1")
+        self.assertTrue((lib.edge_counts(selected.mesh().f)[2] == 1).any(), "the crown stays open")
+        both = run([BUSTS.file("hole")], open_crown + [fill])
+        self.assertEqual(both.figures()["regions"], "2")
+
+    def test_new_faces_are_selected(self):
+        steps = [template("fill_hole", Database=BUSTS.database, **mend.MEND), host_filter("Delete Selected Faces")]
+        result = run([BUSTS.file("hole")], steps)
+        scan = BUSTS.mesh("hole")
+        self.assertHasFaces(result.mesh(), scan)
+        self.assertEqual(len(result.mesh().f), len(scan.f))
 
     def test_as_in_the_thesis(self):
         """Neither refined, fitted nor blended."""

@@ -37,7 +37,10 @@ TEST(Topology, HolesAreCountedAndTraced) {
   EXPECT_EQ(c.boundary_loops, 2);
   EXPECT_EQ(c.euler, 0);
   EXPECT_TRUE(c.manifold());
-  for (const std::vector<int>& loop : mesh::boundary_loops(mesh, mesh::edge_map(mesh))) EXPECT_EQ(loop.size(), 3u);
+  for (const mesh::Loop& loop : mesh::boundary_loops(mesh, mesh::edge_map(mesh))) {
+    EXPECT_EQ(loop.size(), 3);
+    EXPECT_TRUE(loop.closed);
+  }
 }
 
 // The faces between the two holes make two fans at the vertex, and a border
@@ -73,7 +76,27 @@ TEST(Topology, LoopsGoAlongTheFaces) {
   mesh.faces = {{0, 1, 2}, {0, 2, 3}};
   const auto loops = mesh::boundary_loops(mesh, mesh::edge_map(mesh));
   ASSERT_EQ(loops.size(), 1u);
-  EXPECT_EQ(loops[0], (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(loops[0].vertices, (std::vector<int>{0, 1, 2, 3}));
+}
+
+// A fin of two faces on an inner edge of a sphere: its border begins and ends at
+// the edge of three faces, and bounds no hole. Nor does it matter at which of
+// its edges the walk begins.
+TEST(Topology, BordersThatEndAtNonManifoldEdgesAreChains) {
+  for (int turn = 0; turn < 2; ++turn) {
+    Mesh mesh = sphere();
+    const int a = mesh.faces[0][0], b = mesh.faces[0][1], n = mesh.vertex_count();
+    mesh.vertices.push_back(2 * mesh.vertices[a]), mesh.vertices.push_back(2 * mesh.vertices[b]);
+    mesh.faces.push_back({a, b, n + 1}), mesh.faces.push_back({a, n + 1, n});
+    if (turn) std::swap(mesh.faces[mesh.faces.size() - 1], mesh.faces[mesh.faces.size() - 2]);
+    const mesh::EdgeMap map = mesh::edge_map(mesh);
+    ASSERT_EQ(map.nonmanifold_edges, 1);
+    const auto loops = mesh::boundary_loops(mesh, map);
+    ASSERT_EQ(loops.size(), 1u);
+    EXPECT_FALSE(loops[0].closed);
+    EXPECT_EQ(loops[0].vertices, (std::vector<int>{b, n + 1, n, a}));
+    EXPECT_EQ(loops[0].edges(), 3);
+  }
 }
 
 TEST(Topology, NonManifoldEdgesAndVertices) {
