@@ -47,7 +47,7 @@ examples::ExampleOptions rendering(cv::Size depth) {
   const double scale = std::min(1.0, double(kMostPixels) / std::max(depth.width, depth.height));
   o.width = std::clamp(int(depth.width * scale), 8, kMostPixels);
   o.height = std::clamp(int(depth.height * scale), 8, kMostPixels);
-  o.ambient = 1, o.back = false;
+  o.light.ambient = 1, o.back = false;
   return o;
 }
 

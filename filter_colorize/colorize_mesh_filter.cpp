@@ -10,6 +10,8 @@
 #include "parts/colorize/colorize_mesh.h"
 #include "parts/host/common.h"
 #include "parts/io/raster_io.h"
+#include "parts/render/atlas.h"
+#include "parts/render/check_memory.h"
 #include "parts/render/surface_color.h"
 #include "parts/render/texture.h"
 #include "parts/synthesis/usage_picture.h"
@@ -70,7 +72,7 @@ colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh,
   o.rendering.front = preset.front.value_or(o.front);
   o.rendering.width = inputs.integer("Width");
   o.rendering.height = inputs.integer("Height");
-  o.rendering.ambient = 1, o.rendering.back = false;
+  o.rendering.light.ambient = 1, o.rendering.back = false;
   o.align = inputs.flag("Align");
   if (inputs.choice("Keep") == kSelectedFaces) {
     if (std::count(mesh.face_selected.begin(), mesh.face_selected.end(), 1) == 0)
@@ -84,11 +86,8 @@ colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh,
 
 void check_texture_size(int size) {
   constexpr double kBytes = 40;  // a texel while it is found
-  const double needed = kBytes * size * size;
-  if (needed > available_memory())
-    throw UserError("A texture of " + std::to_string(size) + " x " + std::to_string(size) + " needs about " +
-                    std::to_string(int(needed / 1e6)) + " MB to make and " +
-                    std::to_string(int(available_memory() / 1e6)) + " MB are free; choose a smaller TextureSize.");
+  render::check_memory("A texture of " + std::to_string(size) + " x " + std::to_string(size), kBytes * size * size,
+                       available_memory(), "choose a smaller TextureSize");
 }
 
 /// The mesh with a texture: its picture, its file.
@@ -141,6 +140,10 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   files.commit();
   log_report(colors, progress);
   log_value(progress, "seen", colors.seen);
+  if (!colors.continued)
+    log_value(
+        progress, "warning",
+        "The colours of what no view sees could not be fitted to those around; they are the most similar model's.");
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   Outcome outcome;
   outcome.layers.push_back({"Colorized", std::move(mesh)});

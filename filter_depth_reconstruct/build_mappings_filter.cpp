@@ -30,10 +30,10 @@ std::vector<Parameter> parameters(const Scene&) {
             "to it."),
       point("Front", options.front, "Front", "The direction in which the models face; as for Up."),
       point(
-          "Light", options.light, "Light",
+          "Light", options.light.direction, "Light",
           "The direction to the light as the camera sees it: x to the right, y up, z towards the viewer. Choose it as "
           "in the images that are to be reconstructed."),
-      number("Ambient", options.ambient, 0, 1, "Ambient light", "The share of light that comes from everywhere."),
+      number("Ambient", options.light.ambient, 0, 1, "Ambient light", "The share of light that comes from everywhere."),
       flag("BackSide", options.back, "Back side",
            "Stores the depth of the farthest surface too, from which back sides are reconstructed."),
   };
@@ -45,8 +45,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   options.width = inputs.integer("Width");
   options.height = inputs.integer("Height");
   const std::vector<render::View> views = render::parse_views(inputs.text("Views"));
-  options.light = inputs.point("Light");
-  options.ambient = inputs.number("Ambient");
+  options.light.direction = inputs.point("Light");
+  options.light.ambient = inputs.number("Ambient");
   options.back = inputs.flag("BackSide");
   const io::ModelDatabase models(inputs.text("Models"), progress);
   const io::ClassPreset preset = io::read_class_preset(models.path());

@@ -241,8 +241,7 @@ cv::Mat draw(const Model& model, const render::Camera& camera, const Arguments& 
   options.smooth = !a.flat;
   options.colors = !a.plain;
   options.base = {222, 224, 230, 255};
-  options.light = {-0.4, 0.55, 0.85};
-  options.ambient = 0.55;
+  options.light = {{-0.4, 0.55, 0.85}, 0.55};
   options.sky = 0.5;
   options.rim = 0.3;
   options.mark_back_faces = a.mark_back;

@@ -5,40 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "parts/colorize/options.h"
+#include "parts/colorize/report.h"
 #include "parts/examples/example.h"
 #include "parts/synthesis/synthesis.h"
 
 /// What the colouring of depth maps and of meshes have in common: which objects
 /// give their colours, as which planes, and how these are weighed.
 namespace parts::colorize {
-
-struct ColorizeOptions {
-  int examples = 2;                        ///< objects whose colours are used; 1 morphs one image-map onto the shape
-  std::vector<std::string> choose;         ///< their labels; empty: those whose depth is most like the query's
-  render::View view;                       ///< from which the depth was seen, of examples that have several
-  std::vector<int> patch_sizes{9, 11, 7};  ///< windows' sides in pixels, odd, coarse to fine: one a pyramid level
-  double weight_depth = 3;                 ///< weights: 1 = a difference of one standard deviation counts 1
-  double weight_detail = 3;                ///< of the depth's high frequencies
-  double weight_y = 1, weight_cb = 0.3, weight_cr = 0.3;
-  double weight_position = 5;  ///< of the place relative to the foreground's centroid
-  int max_iterations = 10;     ///< a level
-  double pca_share = 0.2;      ///< of the principal components that propose candidates (5.2)
-  bool centered = true;        ///< images are compared centroid on centroid; false: as they lie, aligned already
-  bool harmonize = true;       ///< examples of another exposure or tint are matched to the best one
-  unsigned seed = 0;           ///< 0: the most similar examples; others: drawn among the more similar half
-  int threads = 0;             ///< 0 = all cores; the result does not depend on it
-};
-
-/// How a colouring went.
-struct ColorizeReport {
-  std::vector<std::string> used;        ///< labels of the examples, the most similar first
-  std::vector<double> shares;           ///< of the foreground that each of them gave
-  std::vector<std::string> harmonized;  ///< labels of those whose colours were changed
-  int left_out = 0;  ///< examples fewer than asked for, as the others' colours do not go with the first one's
-  std::vector<std::vector<double>> objective;  ///< per level and iteration: mean log Sim (eq. 3)
-  bool aligned = false;                        ///< the query was moved and scaled into the examples' frame
-  double patch_distance = 0;                   ///< root mean square difference of patches, in standard deviations
-};
 
 /// The planes of an example. Colours are 0..1; the relief is depth about its
 /// mean, in pixels.

@@ -7,6 +7,7 @@
 
 #include "parts/base/error.h"
 #include "parts/base/median.h"
+#include "parts/colorize/color_examples.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/mask.h"
 #include "parts/synthesis/pyramid.h"
@@ -39,16 +40,11 @@ Frame fit(const cv::Mat& mask, cv::Size frame, double typical_reach, const cv::P
 void fill_sources(ColorizeResult& result) {
   const cv::Mat missing = (result.example < 0) & (result.mask != 0);
   if (cv::countNonZero(missing) == 0) return;
-  cv::Mat distance, label;
-  cv::distanceTransform(result.example < 0, distance, label, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<cv::Point> where(result.example.total() + 1);
-  for (int y = 0; y < label.rows; ++y)
-    for (int x = 0; x < label.cols; ++x)
-      if (result.example.at<int>(y, x) >= 0) where[label.at<int>(y, x)] = {x, y};
-  for (int y = 0; y < label.rows; ++y)
-    for (int x = 0; x < label.cols; ++x)
+  const cv::Mat nearest = render::nearest_foreground(result.example >= 0);
+  for (int y = 0; y < missing.rows; ++y)
+    for (int x = 0; x < missing.cols; ++x)
       if (missing.at<uchar>(y, x)) {
-        const cv::Point p = where[label.at<int>(y, x)];
+        const cv::Point p(nearest.at<cv::Vec2i>(y, x));
         result.example.at<int>(y, x) = result.example.at<int>(p);
         result.source.at<cv::Vec2i>(y, x) = result.source.at<cv::Vec2i>(p);
       }

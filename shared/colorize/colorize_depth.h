@@ -2,7 +2,9 @@
 #pragma once
 
 #include "parts/base/progress.h"
-#include "parts/colorize/color_examples.h"
+#include "parts/colorize/options.h"
+#include "parts/colorize/report.h"
+#include "parts/examples/example.h"
 
 namespace parts::colorize {
 

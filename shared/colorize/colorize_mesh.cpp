@@ -8,7 +8,11 @@
 #include "parts/align/align.h"
 #include "parts/base/error.h"
 #include "parts/base/memory.h"
+#include "parts/colorize/color_examples.h"
 #include "parts/colorize/kept_colors.h"
+#include "parts/mesh/attributes.h"
+#include "parts/render/check_memory.h"
+#include "parts/render/rasterize.h"
 #include "parts/render/surface_color.h"
 #include "parts/synthesis/pyramid.h"
 
@@ -88,7 +92,7 @@ bool align(examples::ClassModel& query, const examples::ClassModel& model, int t
   if (turned > kMostTurned || scale > kMostScaled || scale < 1 / kMostScaled ||
       found.rms_after > kGain * found.rms_before)
     return false;
-  for (Vec3& v : query.mesh.vertices) v = linear * v + found.matrix.topRightCorner<3, 1>();
+  query.mesh = mesh::transformed(std::move(query.mesh), Eigen::Affine3d(found.matrix));
   return true;
 }
 
@@ -170,11 +174,8 @@ void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
   constexpr double kBytes = 180;  // a pixel and image: planes, bands, pyramids, matches
   double pixels = 0;
   for (const cv::Rect& part : parts) pixels += double(part.area());
-  const double needed = pixels * kBytes * double(images);
-  if (needed > available_memory())
-    throw UserError("The views need about " + std::to_string(int(needed / 1e6)) + " MB and " +
-                    std::to_string(int(available_memory() / 1e6)) +
-                    " MB are free; choose a smaller Width and Height, fewer Views or fewer Examples.");
+  render::check_memory("Colouring these views", pixels * kBytes * double(images), available_memory(),
+                       "choose a smaller Width and Height, fewer Views or fewer Examples");
 }
 
 /// Whether nearly all that is seen are front faces.
@@ -194,9 +195,7 @@ bool faces_outwards(const examples::ClassModel& query, double frame, const Color
     for (int y = 0; y < face.rows; ++y)
       for (int x = 0; x < face.cols; ++x)
         if (const int f = face.at<int>(y, x); f >= 0) {
-          const Vec3 n = (query.mesh.corner(f, 1) - query.mesh.corner(f, 0))
-                             .cross(query.mesh.corner(f, 2) - query.mesh.corner(f, 0));
-          front += n.dot(camera.rotation.row(2)) > 0, ++all;
+          front += query.mesh.area_vector(f).dot(camera.rotation.row(2)) > 0, ++all;
         }
   }
   return double(front) > 0.95 * double(all);

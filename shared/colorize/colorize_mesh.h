@@ -3,6 +3,7 @@
 
 #include "parts/base/progress.h"
 #include "parts/colorize/mesh_colors.h"
+#include "parts/colorize/options.h"
 #include "parts/examples/class_models.h"
 
 namespace parts::colorize {

@@ -37,7 +37,8 @@ std::vector<Vec3f> model_colors(const Mesh& posed, const std::vector<char>& used
 
 /// Continues values from the known vertices over the others along edges;
 /// vertices that no known one is joined to get a share of 0.
-void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std::vector<Vec3f>& value) {
+/// @return false: there is no solution, and nothing has changed
+bool continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std::vector<Vec3f>& value) {
   constexpr double kPull = 1e-3;                                   // towards 0, so that a solution exists everywhere
   const std::vector<int> place = mesh::first_at_same_place(mesh);  // corners of their own are one place
   std::vector<int> row(mesh.vertices.size(), -1);
@@ -45,7 +46,7 @@ void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std
   for (const Triangle& f : mesh.faces)
     for (int v : f)
       if (!known[place[v]] && row[place[v]] < 0) row[place[v]] = rows++;
-  if (rows == 0) return;
+  if (rows == 0) return true;
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> degree(std::size_t(rows), kPull);
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(rows, 3);
@@ -68,8 +69,10 @@ void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std
   solver.setTolerance(1e-4);
   solver.compute(laplacian);
   const Eigen::MatrixX3d solution = solver.solve(right);
+  if (solver.info() != Eigen::Success || !solution.allFinite()) return false;
   for (std::size_t v = 0; v < value.size(); ++v)
     if (!known[v] && row[place[v]] >= 0) value[v] = solution.row(row[place[v]]).transpose().cast<float>();
+  return true;
 }
 
 }  // namespace
@@ -79,7 +82,7 @@ Vec3f to_ycbcr(const Vec3f& bgr) {
   return {y, (bgr[0] / 255 - y) * 0.564f + 128 / 255.f, (bgr[2] / 255 - y) * 0.713f + 128 / 255.f};
 }
 
-void complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
+bool complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
                      std::vector<Eigen::Vector3f>& color, int threads) {
   std::vector<char> used(posed.vertices.size(), 0);  // hidden ones and their neighbours
   for (const Triangle& f : posed.faces)
@@ -89,9 +92,10 @@ void complete_colors(const Mesh& posed, const std::vector<char>& known, const ex
   std::vector<Vec3f> difference(color.size(), Vec3f::Zero());
   for (std::size_t v = 0; v < color.size(); ++v)
     if (known[v] && used[v]) difference[v] = color[v] - of_model[v];
-  continue_harmonically(posed, known, difference);
+  const bool continued = continue_harmonically(posed, known, difference);
   for (std::size_t v = 0; v < color.size(); ++v)
     if (!known[v]) color[v] = (of_model[v] + difference[v]).cwiseMax(0).cwiseMin(1);
+  return continued;
 }
 
 }  // namespace parts::colorize

@@ -14,7 +14,8 @@ Eigen::Vector3f to_ycbcr(const Eigen::Vector3f& bgr);
 /// @param posed   the mesh, its vertices in the model's world space
 /// @param known   per vertex
 /// @param color   Y, Cb and Cr of each vertex, 0..1; those not known are found
-void complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
+/// @return false: the correction could not be solved for; the model's colours stand as they are
+bool complete_colors(const Mesh& posed, const std::vector<char>& known, const examples::ClassModel& model,
                      std::vector<Eigen::Vector3f>& color, int threads);
 
 }  // namespace parts::colorize

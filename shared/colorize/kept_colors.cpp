@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "parts/base/parallel.h"
+#include "parts/render/rasterize.h"
 
 namespace parts::colorize {
 

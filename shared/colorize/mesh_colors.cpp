@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "parts/base/parallel.h"
+#include "parts/colorize/color_examples.h"
 #include "parts/colorize/hidden_colors.h"
 #include "parts/colorize/kept_colors.h"
 #include "parts/mesh/attributes.h"
+#include "parts/render/atlas.h"
 #include "parts/render/surface_color.h"
 
 namespace parts::colorize {
@@ -38,9 +40,9 @@ void color_vertices(const Mesh& posed, const examples::ClassModel& like, int thr
     }
   });
   double area = 0, seen = 0;
-  for (const Triangle& f : posed.faces) {
-    const double a =
-        (posed.vertices[f[1]] - posed.vertices[f[0]]).cross(posed.vertices[f[2]] - posed.vertices[f[0]]).norm();
+  for (int i = 0; i < posed.face_count(); ++i) {
+    const Triangle& f = posed.faces[i];
+    const double a = posed.area_vector(i).norm();
     if (!std::isfinite(a)) continue;
     area += a, seen += a * (known[f[0]] + known[f[1]] + known[f[2]]) / 3;
   }
@@ -48,7 +50,7 @@ void color_vertices(const Mesh& posed, const examples::ClassModel& like, int thr
   Mesh there;
   there.faces = posed.faces;
   for (const Vec3& v : posed.vertices) there.vertices.push_back(v * like.size + like.center);
-  complete_colors(there, known, like, colors.vertex, threads);
+  colors.continued = complete_colors(there, known, like, colors.vertex, threads);
 }
 
 /// The others' colours are made to go with those that stay.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "parts/colorize/color_examples.h"
+#include "parts/colorize/report.h"
 #include "parts/colorize/view_sheet.h"
 #include "parts/examples/class_models.h"
-#include "parts/render/atlas.h"
+#include "parts/render/load_textures.h"
 
 namespace parts::colorize {
 
@@ -15,8 +15,9 @@ struct MeshColors : ColorizeReport {
   std::vector<cv::Mat> planes;          ///< Y, Cb and Cr of the sheet
   cv::Mat example;                      ///< 32S: of the sheet, index into `used`; -1 = background
   ViewSheet sheet;
-  bool oriented = true;  ///< the faces look outwards
-  double seen = 0;       ///< share of the surface that some view sees; the rest follows the model most like it
+  bool oriented = true;   ///< the faces look outwards
+  bool continued = true;  ///< the colours of hidden parts go over into those that are seen (see complete_colors)
+  double seen = 0;        ///< share of the surface that some view sees; the rest follows the model most like it
 
   std::vector<Eigen::Vector3f> correction;  ///< per vertex, added to what was found; empty: none
   std::vector<char> keep;                   ///< faces whose colours are their own

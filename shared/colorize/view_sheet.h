@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "parts/examples/example.h"
-#include "parts/synthesis/synthesis.h"
+#include "parts/synthesis/patch_image.h"
 
 namespace parts::colorize {
 

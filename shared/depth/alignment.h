@@ -2,7 +2,8 @@
 #pragma once
 
 #include "parts/depth/gallery.h"
-#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/options.h"
+#include "parts/depth/query.h"
 
 namespace parts::depth {
 

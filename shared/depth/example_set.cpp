@@ -63,8 +63,9 @@ ExampleSet::ExampleSet(Gallery& gallery, const DepthOptions& options, const std:
     int added = 0;
     for (const Candidate& c : list) {
       if (added >= each || int(all_.size()) >= options.examples) break;
-      const bool there = std::any_of(all_.begin(), all_.end(),
-                                     [&](const Prepared& p) { return p.object == c.object && same(p.view, c.view); });
+      const bool there = std::any_of(all_.begin(), all_.end(), [&](const ComparableExample& p) {
+        return p.object == c.object && same(p.view, c.view);
+      });
       if (!there) add(c.object, c.view, ignored), ++added;
     }
   }
@@ -136,7 +137,7 @@ synthesis::ExampleChange ExampleSet::update(const synthesis::SynthesisState& sta
   if (options_.update_views && views.size() > 1) {
     const render::View mean = gallery_.nearest(0, {yaw / total, pitch / total});
     const bool close = std::any_of(views.begin(), views.end(),
-                                   [&](const InUse& u) { return examples::angle_between(u.view, mean) < same_view; });
+                                   [&](const InUse& u) { return render::angle_between(u.view, mean) < same_view; });
     if (!close) {
       const std::vector<int> objects = nearest_objects(state, mean, int(views.front().examples.size()));
       change.drop = views.front().examples;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "parts/depth/gallery.h"
-#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/options.h"
+#include "parts/synthesis/synthesis.h"
 
 namespace parts::depth {
 
@@ -16,7 +17,7 @@ class ExampleSet {
              const synthesis::PatchImage& small);
 
   size_t size() const { return all_.size(); }
-  const Prepared& operator[](size_t k) const { return all_[k]; }
+  const ComparableExample& operator[](size_t k) const { return all_[k]; }
   synthesis::PatchImage front(size_t k) const;  ///< {intensity, depth}, for the optimisation
   Gallery& gallery() const { return gallery_; }
 
@@ -32,7 +33,7 @@ class ExampleSet {
 
   Gallery& gallery_;
   const DepthOptions& options_;
-  std::vector<Prepared> all_;
+  std::vector<ComparableExample> all_;
 };
 
 }  // namespace parts::depth

@@ -66,7 +66,7 @@ render::View Gallery::nearest(int k, const render::View& view) const {
   render::View best = view;
   double least = 1e30;
   for (const render::View& v : source_.views(objects_[k]))
-    if (const double a = examples::angle_between(v, view); a < least) least = a, best = v;
+    if (const double a = render::angle_between(v, view); a < least) least = a, best = v;
   return best;
 }
 
@@ -87,9 +87,9 @@ cv::Mat without_pits(const cv::Mat& depth, const cv::Mat& mask) {
 
 }  // namespace
 
-Prepared Gallery::get(int k, const render::View& view) {
+ComparableExample Gallery::get(int k, const render::View& view) {
   const examples::Example e = source_.get(objects_[k], view);
-  Prepared p;
+  ComparableExample p;
   p.object = k;
   p.view = e.view;
   p.camera = e.camera;

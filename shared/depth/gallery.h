@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "parts/examples/example.h"
-#include "parts/synthesis/synthesis.h"
+#include "parts/synthesis/patch_image.h"
 
 namespace parts::depth {
 
 /// An example made ready for comparing: planes {intensity 0..1, depth, back
 /// depth where there is one}. Depths in pixels, centred on the foreground's mean
 /// front depth, so that they compare across objects, cameras and units.
-struct Prepared {
+struct ComparableExample {
   int object = 0;
   render::View view;
   synthesis::PatchImage image;
@@ -53,7 +53,7 @@ class Gallery {
 
   /// The view of an object that is got when this one is asked for.
   render::View nearest(int k, const render::View& view) const;
-  Prepared get(int k, const render::View& view);
+  ComparableExample get(int k, const render::View& view);
   const synthesis::PatchImage& small(int k, const render::View& view);
 
  private:

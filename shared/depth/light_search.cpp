@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parts/depth/view_search.h"
+#include "parts/depth/small_level.h"
 #include "parts/synthesis/pyramid.h"
 
 namespace parts::depth {
@@ -55,12 +55,8 @@ double patch_distance(const synthesis::PatchImage& query, const std::vector<Unli
   std::vector<synthesis::PatchImage> examples;
   for (const Unlit& object : objects) examples.push_back(lit(object, light, longest));
   synthesis::SynthesisOptions o = synthesis_options(options);
-  o.patch_sizes = {o.patch_sizes.front()};
   o.position *= 0.4, o.silhouette *= 0.25;  // of which light changes nothing
-  o.longest_coarsest = 0;
-  o.max_iterations = 1;
-  Progress quiet;
-  return cv::mean(synthesis::synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
+  return small_distance(query, examples, o);
 }
 
 /// Turned away from the viewer's direction by an angle, towards an azimuth; degrees.

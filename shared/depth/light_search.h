@@ -2,7 +2,7 @@
 #pragma once
 
 #include "parts/depth/gallery.h"
-#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/options.h"
 
 namespace parts::depth {
 

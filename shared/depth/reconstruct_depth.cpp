@@ -12,6 +12,7 @@
 #include "parts/depth/example_set.h"
 #include "parts/depth/light_search.h"
 #include "parts/depth/segment.h"
+#include "parts/depth/small_level.h"
 #include "parts/depth/trust.h"
 #include "parts/depth/view_search.h"
 #include "parts/synthesis/pyramid.h"
@@ -45,6 +46,7 @@ void check(const DepthQuery& query, const DepthOptions& options) {
     if (!(w >= 0) || !std::isfinite(w)) throw UserError("A weight is negative or not a number; give 0 or more.");
   if (options.intensity + options.high_frequency + options.silhouette <= 0)
     throw UserError("The image counts nothing; raise the weight of the intensity or of the high frequencies.");
+  if (options.patch_sizes.empty()) throw UserError("No patch size is given; give one for each level, as in 5,7,9.");
   if (options.views.empty()) throw UserError("No view is given to start from; give one, as in 0,0.");
 }
 
@@ -67,11 +69,80 @@ render::Camera query_camera(const render::Camera& example, double pixels_per_uni
   return c;
 }
 
-// The back side: from front depth to the second layer (thesis 4.2).
-cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const ExampleSet& set,
-                        const synthesis::SynthesisResult& fronts, const DepthOptions& options, Progress& progress) {
+/// Restores the light of a source, also where an exception ends the work.
+class KeptLight {
+ public:
+  explicit KeptLight(examples::ExampleSource& source) : source_(source), light_(source.light()) {}
+  ~KeptLight() {
+    if (light_) source_.set_light(*light_);
+  }
+  KeptLight(const KeptLight&) = delete;
+  KeptLight& operator=(const KeptLight&) = delete;
+
+ private:
+  examples::ExampleSource& source_;
+  std::optional<examples::Light> light_;
+};
+
+/// The query in the examples' frame.
+struct PlacedQuery {
+  Placement placement;
+  synthesis::PatchImage whole, small;  ///< {intensity}; small: at the scale of Gallery::small
+};
+
+PlacedQuery place_in_frame(const DepthQuery& query, Gallery& gallery, const DepthOptions& options) {
+  PlacedQuery q;
+  q.placement = options.align ? align_query(query, gallery, options) : fit_query(query, gallery.image_size());
+  q.whole = place(query, q.placement, gallery.image_size());
+  if (cv::countNonZero(q.whole.mask) < 16)
+    throw UserError("The object is too small in the image; give one that it fills, or align it.");
+  q.small = thumbnail(q.whole, Gallery::thumbnail_size);
+  return q;
+}
+
+/// From where examples are taken.
+struct Viewpoints {
+  std::vector<render::View> views;
+  std::optional<render::View> found;  ///< nothing where it was not searched
+};
+
+/// Searches the view and the light as far as the options ask for it; the gallery
+/// is left in the light that was found.
+Viewpoints search_view_and_light(const synthesis::PatchImage& small, Gallery& gallery, const DepthOptions& options,
+                                 Progress& progress) {
+  Viewpoints result{options.views, {}};
+  const auto search_light = [&](const render::View& view) {
+    if (options.update_light && gallery.light()) gallery.set_light(find_light(small, gallery, view, options));
+  };
+  search_light(options.views.front());
+  if (!options.update_views) return result;
+  result.found = find_view(small, gallery, options, progress);
+  const auto near = std::find_if(options.views.begin(), options.views.end(), [&](const render::View& v) {
+    return render::angle_between(v, *result.found) < same_view;
+  });
+  result.views = {near != options.views.end() ? *near : *result.found};
+  if (render::angle_between(result.views.front(), options.views.front()) > 2 * same_view)
+    search_light(result.views.front());
+  return result;
+}
+
+/// The front's depth, in pixels; the examples change meanwhile.
+synthesis::SynthesisResult synthesize_front(const synthesis::PatchImage& placed, ExampleSet& set,
+                                            const DepthOptions& options, Progress& progress) {
+  synthesis::PatchImage query = placed;
+  query.planes.resize(2);
+  std::vector<synthesis::PatchImage> examples;
+  for (size_t k = 0; k < set.size(); ++k) examples.push_back(set.front(k));
+  return synthesis::synthesize(
+      query, examples, synthesis_options(options),
+      [&](const synthesis::SynthesisState& state) { return set.update(state); }, progress);
+}
+
+/// The back side: from front depth to the second layer (thesis 4.2).
+cv::Mat synthesize_back(const cv::Mat& mask, const ExampleSet& set, const synthesis::SynthesisResult& fronts,
+                        const DepthOptions& options, Progress& progress) {
   synthesis::PatchImage query;
-  query.planes = {front, cv::Mat()};
+  query.planes = {fronts.planes[0], cv::Mat()};
   query.mask = mask;
   std::vector<synthesis::PatchImage> examples;
   for (size_t k = 0; k < set.size(); ++k) {
@@ -91,6 +162,55 @@ cv::Mat synthesize_back(const cv::Mat& front, const cv::Mat& mask, const Example
   return synthesis::synthesize(query, examples, o, {}, progress).planes[0];
 }
 
+/// How examples' pixels and depths become the query's and the database's.
+struct ToWorld {
+  render::Camera camera;       ///< of the example that gave most
+  double pixels_per_unit = 1;  ///< of the same
+  double middle = 0;           ///< of all that gave, weighted by their patches: the depth that planes are about
+};
+
+/// Which examples gave what. Fills used and view.
+ToWorld count_examples(const ExampleSet& set, const synthesis::SynthesisResult& fronts,
+                       const std::optional<render::View>& found, DepthResult& result) {
+  double patches = 0, middle = 0, yaw = 0, pitch = 0;
+  size_t most = 0;
+  for (size_t k = 0; k < set.size(); ++k) {
+    const double n = double(fronts.used[k]);
+    result.used.push_back({set.gallery().name(set[k].object), set[k].view, fronts.used[k]});
+    patches += n, middle += n * set[k].middle, yaw += n * set[k].view.yaw, pitch += n * set[k].view.pitch;
+    if (fronts.used[k] > fronts.used[most]) most = k;
+  }
+  result.view = found && set.gallery().has_any_view() ? *found : render::View{yaw / patches, pitch / patches};
+  return {set[most].camera, set[most].pixels_per_unit, middle / patches};
+}
+
+/// Back into the query's pixels, and into the database's units. Fills the rasters and the camera.
+void bring_back(const DepthQuery& query, const PlacedQuery& placed, const ToWorld& to_world,
+                const synthesis::SynthesisResult& fronts, const cv::Mat& back, DepthResult& result) {
+  const cv::Size size = query.color.size();
+  result.camera = query_camera(to_world.camera, to_world.pixels_per_unit, placed.placement, size);
+  result.mask = query.mask != 0;
+  const cv::Mat background = result.mask == 0;
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const auto world = [&](const cv::Mat& plane) {
+    cv::Mat depth = to_query(synthesis::extend(plane, placed.whole.mask), placed.placement, size, cv::INTER_CUBIC) /
+                        to_world.pixels_per_unit +
+                    to_world.middle;
+    depth.setTo(none, background);
+    return depth;
+  };
+  result.depth = world(fronts.planes[0]);
+  if (!back.empty()) {
+    result.back_depth = cv::max(world(back), result.depth);
+    result.back_depth.setTo(none, background);
+  }
+  cv::Mat example;
+  fronts.example.convertTo(example, CV_32F);
+  to_query(example, placed.placement, size, cv::INTER_NEAREST).convertTo(result.example, CV_32S);
+  result.example.setTo(-1, background);
+  result.distance = to_query(fronts.distance, placed.placement, size, cv::INTER_NEAREST);
+}
+
 }  // namespace
 
 DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& source, const DepthOptions& options,
@@ -99,7 +219,7 @@ DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& 
   check_image(query.color);
   if (query.mask.empty() && !options.segment) query.mask = plain_background_mask(query.color);
   check(query, options);
-  DepthResult result;
+  const KeptLight kept(source);
   Gallery gallery(source, options.objects, options.seed);
   if (gallery.size() == 0) throw UserError("The database holds no example; choose another.");
 
@@ -108,89 +228,28 @@ DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& 
     query.mask = segment(query, gallery, options, progress);
   }
   progress.stage("Aligning", 5, 10);
-  const Placement placement =
-      options.align ? align_query(query, gallery, options) : fit_query(query, gallery.image_size());
-  result.scale = placement.scale, result.rotation = placement.rotation;
-  const synthesis::PatchImage placed = place(query, placement, gallery.image_size());
-  if (cv::countNonZero(placed.mask) < 16)
-    throw UserError("The object is too small in the image; give one that it fills, or align it.");
-  const synthesis::PatchImage small = thumbnail(placed, Gallery::thumbnail_size);
-
+  const PlacedQuery placed = place_in_frame(query, gallery, options);
   progress.stage("Searching the view", 10, 35);
-  std::vector<render::View> views = options.views;
-  const std::optional<examples::Light> given_light = source.light();
-  const auto search_light = [&](const render::View& view) {
-    if (options.update_light && given_light) gallery.set_light(find_light(small, gallery, view, options));
-  };
-  search_light(views.front());
-  std::optional<render::View> found;
-  if (options.update_views) {
-    found = find_view(small, gallery, options, progress);
-    const auto near = std::find_if(views.begin(), views.end(), [&](const render::View& v) {
-      return examples::angle_between(v, *found) < same_view;
-    });
-    views = {near != views.end() ? *near : *found};
-    if (examples::angle_between(views.front(), options.views.front()) > 2 * same_view) search_light(views.front());
-  }
-
+  const Viewpoints from = search_view_and_light(placed.small, gallery, options, progress);
   progress.stage("Choosing examples", 35, 40);
-  ExampleSet set(gallery, options, views, small);
-  synthesis::PatchImage work = placed;
-  work.planes.resize(2);
-  std::vector<synthesis::PatchImage> examples;
-  for (size_t k = 0; k < set.size(); ++k) examples.push_back(set.front(k));
-
-  Progress part = progress.part(40, options.back ? 75 : 95);
-  const synthesis::SynthesisResult fronts = synthesis::synthesize(
-      work, examples, synthesis_options(options),
-      [&](const synthesis::SynthesisState& state) { return set.update(state); }, part);
-  examples.clear();
-
+  ExampleSet set(gallery, options, from.views, placed.small);
+  Progress front_part = progress.part(40, options.back ? 75 : 95);
+  const synthesis::SynthesisResult fronts = synthesize_front(placed.whole, set, options, front_part);
   cv::Mat back;
   if (options.back) {
-    Progress backs = progress.part(75, 95);
-    back = synthesize_back(fronts.planes[0], work.mask, set, fronts, options, backs);
+    Progress back_part = progress.part(75, 95);
+    back = synthesize_back(placed.whole.mask, set, fronts, options, back_part);
   }
 
   progress.stage("Judging", 95, 100);
+  DepthResult result;
+  result.scale = placed.placement.scale, result.rotation = placed.placement.rotation;
   result.light = gallery.light();
-  result.strangeness = strangeness(small, set, options);
+  result.strangeness = strangeness(placed.small, set, options);
   result.trusted = result.strangeness < untrusted;
   result.plausibility = fronts.objective;
-  double patches = 0, middle = 0, yaw = 0, pitch = 0;
-  size_t most = 0;
-  for (size_t k = 0; k < set.size(); ++k) {
-    const double n = double(fronts.used[k]);
-    result.used.push_back({gallery.name(set[k].object), set[k].view, fronts.used[k]});
-    patches += n, middle += n * set[k].middle, yaw += n * set[k].view.yaw, pitch += n * set[k].view.pitch;
-    if (fronts.used[k] > fronts.used[most]) most = k;
-  }
-  middle /= patches;
-  result.view = found && gallery.has_any_view() ? *found : render::View{yaw / patches, pitch / patches};
-
-  // Back into the query's pixels, and into the database's units.
-  const cv::Size size = query.color.size();
-  const double pixels_per_unit = set[most].pixels_per_unit;
-  result.camera = query_camera(set[most].camera, pixels_per_unit, placement, size);
-  result.mask = query.mask != 0;
-  const auto world = [&](const cv::Mat& plane) {
-    cv::Mat depth =
-        to_query(synthesis::extend(plane, work.mask), placement, size, cv::INTER_CUBIC) / pixels_per_unit + middle;
-    depth.setTo(std::numeric_limits<float>::quiet_NaN(), result.mask == 0);
-    return depth;
-  };
-  result.depth = world(fronts.planes[0]);
-  if (!back.empty()) {
-    result.back_depth = world(back);
-    result.back_depth = cv::max(result.back_depth, result.depth);
-    result.back_depth.setTo(std::numeric_limits<float>::quiet_NaN(), result.mask == 0);
-  }
-  cv::Mat example;
-  fronts.example.convertTo(example, CV_32F);
-  to_query(example, placement, size, cv::INTER_NEAREST).convertTo(result.example, CV_32S);
-  result.example.setTo(-1, result.mask == 0);
-  if (given_light) source.set_light(*given_light);
-  result.distance = to_query(fronts.distance, placement, size, cv::INTER_NEAREST);
+  const ToWorld to_world = count_examples(set, fronts, from.found, result);
+  bring_back(query, placed, to_world, fronts, back, result);
   return result;
 }
 

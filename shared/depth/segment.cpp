@@ -6,8 +6,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "parts/base/error.h"
+#include "parts/base/median.h"
 #include "parts/depth/alignment.h"
-#include "parts/depth/view_search.h"
+#include "parts/depth/small_level.h"
 #include "parts/synthesis/pyramid.h"
 
 namespace parts::depth {
@@ -171,11 +172,8 @@ cv::Mat synthesized(const DepthQuery& query, const Placement& placement, Gallery
                 {2, 1, false, false},
                 {3, options.depth, false, false}};
   o.synthesized = {2, 3};
-  o.patch_sizes = {o.patch_sizes.front()};
-  o.longest_coarsest = 0;
   o.silhouette = 0;
-  Progress quiet;
-  cv::Mat small = synthesis::synthesize(q, examples, o, {}, quiet).planes[0], full;
+  cv::Mat small = synthesize_small(q, examples, o, o.max_iterations).planes[0], full;
   cv::resize(small, full, frame, 0, 0, cv::INTER_LINEAR);
   return full;
 }
@@ -184,12 +182,11 @@ cv::Mat synthesized(const DepthQuery& query, const Placement& placement, Gallery
 
 cv::Mat plain_background_mask(const cv::Mat& color) {
   const std::vector<cv::Vec3f> border = border_colors(color);
-  std::vector<float> channel(border.size());
+  std::vector<double> channel(border.size());
   cv::Vec3f middle;
   for (int c = 0; c < 3; ++c) {
     for (size_t i = 0; i < border.size(); ++i) channel[i] = border[i][c];
-    std::nth_element(channel.begin(), channel.begin() + long(channel.size() / 2), channel.end());
-    middle[c] = channel[channel.size() / 2];
+    middle[c] = float(median(channel));
   }
   size_t alike = 0;
   const auto is_background = [&](const cv::Vec3f& v) { return cv::norm(v - middle, cv::NORM_INF) <= 6; };

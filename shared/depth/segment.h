@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parts/base/progress.h"
 #include "parts/depth/gallery.h"
-#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/options.h"
+#include "parts/depth/query.h"
 
 namespace parts::depth {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "parts/depth/view_search.h"
+#include "parts/depth/small_level.h"
 
 namespace parts::depth {
 namespace {
@@ -11,12 +11,7 @@ namespace {
 double mean_distance(synthesis::PatchImage query, const std::vector<synthesis::PatchImage>& examples,
                      const DepthOptions& options) {
   query.planes = {query.planes[0], cv::Mat()};
-  synthesis::SynthesisOptions o = synthesis_options(options);
-  o.patch_sizes = {o.patch_sizes.front()};
-  o.longest_coarsest = 0;
-  o.max_iterations = 1;
-  Progress quiet;
-  return cv::mean(synthesis::synthesize(query, examples, o, {}, quiet).distance, query.mask)[0];
+  return small_distance(query, examples, synthesis_options(options));
 }
 
 }  // namespace

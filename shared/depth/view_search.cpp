@@ -4,20 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace parts::depth {
+#include "parts/depth/small_level.h"
 
-synthesis::SynthesisOptions synthesis_options(const DepthOptions& options) {
-  synthesis::SynthesisOptions o;
-  o.channels = {
-      {0, options.intensity, false, true}, {0, options.high_frequency, true, true}, {1, options.depth, false, false}};
-  o.synthesized = {1};
-  o.patch_sizes = options.patch_sizes;
-  o.position = options.position;
-  o.silhouette = options.silhouette;
-  o.max_iterations = options.max_iterations;
-  o.threads = options.threads;
-  return o;
-}
+namespace parts::depth {
 
 namespace {
 
@@ -29,8 +18,7 @@ struct Spacing {
 constexpr Spacing rounds[] = {{20, 15, 2, 2, 3}, {10, 10, 1, 1, 6}, {5, 5, 1, 1, 6}};
 
 bool known(const std::vector<render::View>& list, const render::View& v) {
-  return std::any_of(list.begin(), list.end(),
-                     [&](const render::View& w) { return examples::angle_between(v, w) < 1; });
+  return std::any_of(list.begin(), list.end(), [&](const render::View& w) { return render::angle_between(v, w) < 1; });
 }
 
 // The patches that each view's examples give.
@@ -46,12 +34,8 @@ std::vector<double> compete(const synthesis::PatchImage& query, Gallery& gallery
       examples.push_back(std::move(e));
       of.push_back(int(v));
     }
-  synthesis::SynthesisOptions o = synthesis_options(options);
-  o.patch_sizes = {o.patch_sizes.front()};
-  o.longest_coarsest = 0;
-  o.max_iterations = std::min(3, options.max_iterations);
-  Progress quiet;
-  const synthesis::SynthesisResult r = synthesis::synthesize(query, examples, o, {}, quiet);
+  const synthesis::SynthesisResult r =
+      synthesize_small(query, examples, synthesis_options(options), std::min(3, options.max_iterations));
   std::vector<double> used(views.size(), 0);
   for (size_t e = 0; e < examples.size(); ++e) used[of[e]] += double(r.used[e]);
   return used;

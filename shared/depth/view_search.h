@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parts/base/progress.h"
 #include "parts/depth/gallery.h"
-#include "parts/depth/reconstruct_depth.h"
+#include "parts/depth/options.h"
 
 namespace parts::depth {
-
-/// The optimisation's options for {intensity, depth}.
-synthesis::SynthesisOptions synthesis_options(const DepthOptions& options);
 
 /// From where the query is seen. Examples from a few views compete for its
 /// patches on a small scale; the mean of the angles, weighted by the patches that

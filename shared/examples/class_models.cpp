@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "parts/base/error.h"
+#include "parts/base/median.h"
 #include "parts/base/parallel.h"
 
 namespace parts::examples {
@@ -106,8 +107,7 @@ double ClassModels::shown_size(double diagonal) const {
 void ClassModels::settle_frame(Progress& progress) {
   std::vector<double> sizes;
   for (const Entry& e : entries_) sizes.push_back(e.diagonal);
-  std::nth_element(sizes.begin(), sizes.begin() + long(sizes.size() / 2), sizes.end());
-  median_ = sizes[sizes.size() / 2];
+  median_ = median(std::move(sizes));
   frame_ = std::numeric_limits<double>::max();
   for (Entry& e : entries_) {
     e.size = shown_size(e.diagonal);

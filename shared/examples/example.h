@@ -8,14 +8,11 @@
 
 #include "parts/io/class_preset.h"
 #include "parts/render/camera.h"
+#include "parts/render/light.h"
 
 namespace parts::examples {
 
-/// One light far away, and what comes from everywhere.
-struct Light {
-  Vec3 direction{0.3, 0.4, 0.85};  ///< towards it, camera frame (x right, y up, z to the viewer)
-  double ambient = 0.35;           ///< 0..1, the share that comes from everywhere
-};
+using render::Light;
 
 /// An example of the mapping from appearance to depth (thesis 4.1): what a
 /// camera sees of one object of the class. Rasters of one size.
@@ -56,8 +53,5 @@ class ExampleSource {
   /// What the database says about its class.
   virtual const io::ClassPreset& preset() const = 0;
 };
-
-/// The angle between two directions of view, degrees.
-double angle_between(const render::View& a, const render::View& b);
 
 }  // namespace parts::examples

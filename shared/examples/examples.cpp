@@ -6,6 +6,7 @@
 
 #include "parts/base/error.h"
 #include "parts/examples/class_models.h"
+#include "parts/examples/stored_examples.h"
 #include "parts/io/mlp_project.h"
 
 namespace parts::examples {
@@ -26,8 +27,8 @@ class RenderedExamples : public ExampleSource {
   Example get(int object, const render::View& view) override {
     return render_example(models_.get(object), view, models_.frame(), options_);
   }
-  std::optional<Light> light() const override { return Light{options_.light, options_.ambient}; }
-  void set_light(const Light& light) override { options_.light = light.direction, options_.ambient = light.ambient; }
+  std::optional<Light> light() const override { return options_.light; }
+  void set_light(const Light& light) override { options_.light = light; }
   std::vector<std::string> files() const override { return models_.files(); }
   const io::ClassPreset& preset() const override { return preset_; }
 

@@ -4,23 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parts/render/rasterize.h"
+
 namespace parts::examples {
-
-double Example::pixels_per_unit() const {
-  if (camera.focal <= 0) return camera.scale;
-  const cv::Scalar mean = cv::mean(depth, mask);
-  return mean[0] > 0 ? camera.focal / mean[0] : 1;
-}
-
-double angle_between(const render::View& a, const render::View& b) {
-  constexpr double degree = EIGEN_PI / 180;
-  const auto direction = [](const render::View& v) {
-    const double yaw = v.yaw * degree, pitch = v.pitch * degree;
-    return Vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
-  };
-  const Vec3 u = direction(a), v = direction(b);
-  return std::atan2(u.cross(v).norm(), u.dot(v)) / degree;
-}
 
 Eigen::Vector2d extent(const Mesh& mesh, const Vec3& center, const Eigen::Matrix3d& rotation) {
   Eigen::Vector2d most(0, 0);
@@ -43,7 +29,6 @@ Example render_example(const ClassModel& model, const render::View& view, double
 
   render::RenderOptions look;
   look.light = options.light;
-  look.ambient = options.ambient;
   look.threads = options.threads;
   render::Rendering seen = render::render(model.mesh, model.textures, camera, look);
   out.image = seen.image;

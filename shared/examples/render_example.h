@@ -2,20 +2,10 @@
 #pragma once
 
 #include "parts/examples/example.h"
-#include "parts/render/rasterize.h"
+#include "parts/examples/options.h"
+#include "parts/render/load_textures.h"
 
 namespace parts::examples {
-
-/// How the models of a class become examples.
-struct ExampleOptions {
-  int width = 150, height = 200;     ///< pixels, 8 to 8192
-  Vec3 up{0, 1, 0}, front{0, 0, 1};  ///< how the models stand
-  Vec3 light{0.3, 0.4, 0.85};        ///< direction to the light, camera frame (x right, y up, z to the viewer)
-  double ambient = 0.35;             ///< 0..1
-  bool back = true;                  ///< the second depth layer too (thesis 4.2)
-  double margin = 0.05;              ///< of the image's sides, free around the models
-  int threads = 0;                   ///< 0 = all cores
-};
 
 /// A model with its images in memory, and where it is in the frame of its class.
 struct ClassModel {

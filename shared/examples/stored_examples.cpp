@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mapping database: rasters of a MeshLab project.
+#include "parts/examples/stored_examples.h"
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include "parts/base/error.h"
-#include "parts/examples/examples.h"
 #include "parts/io/image_size.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"
@@ -45,6 +45,7 @@ render::View view_of(const render::Camera& camera, const io::ClassPreset& preset
   return {std::atan2(q.x(), q.z()) / degree, std::atan2(q.y(), std::hypot(q.x(), q.z())) / degree};
 }
 
+/// A mapping database: rasters of a MeshLab project.
 class StoredExamples : public ExampleSource {
  public:
   StoredExamples(const std::string& path, Progress& progress) : path_(path), preset_(io::read_class_preset(path)) {
@@ -89,7 +90,7 @@ class StoredExamples : public ExampleSource {
     std::vector<Shot>& shots = shots_[object];
     std::size_t best = 0;
     for (std::size_t s = 1; s < shots.size(); ++s)
-      if (angle_between(shots[s].view, view) < angle_between(shots[best].view, view)) best = s;
+      if (render::angle_between(shots[s].view, view) < render::angle_between(shots[best].view, view)) best = s;
     Shot& shot = shots[best];
     if (!shot.example.depth.empty()) return shot.example;
     Example example = load(shot, names_[object]);

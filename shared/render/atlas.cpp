@@ -109,7 +109,7 @@ class Unfolding {
     normal_.resize(mesh.faces.size());
     area_.resize(mesh.faces.size());
     for (int f = 0; f < mesh.face_count(); ++f) {
-      const Vec3 n = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+      const Vec3 n = mesh.area_vector(f);
       area_[f] = n.allFinite() ? n.norm() / 2 : 0;
       normal_[f] = area_[f] > 0 ? n.normalized() : Vec3::Zero();
     }
@@ -337,7 +337,7 @@ std::string texture_coordinates_flaw(const Mesh& mesh, int size) {
   double area = 0, lost = 0;
   for (int f = 0; f < mesh.face_count(); ++f) {
     const Wedges& w = mesh.wedges[f];
-    const double a = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).norm() / 2;
+    const double a = mesh.area(f);
     if (!(a > 0) || !std::isfinite(a)) continue;
     if (w.texture > 0) return "several textures";
     if (w.texture < 0) return "not on all faces";

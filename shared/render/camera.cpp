@@ -47,6 +47,16 @@ std::vector<View> parse_views(const std::string& text) {
   return views;
 }
 
+double angle_between(const View& a, const View& b) {
+  constexpr double degree = EIGEN_PI / 180;
+  const auto direction = [](const View& v) {
+    const double yaw = v.yaw * degree, pitch = v.pitch * degree;
+    return Vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
+  };
+  const Vec3 u = direction(a), v = direction(b);
+  return std::atan2(u.cross(v).norm(), u.dot(v)) / degree;
+}
+
 Eigen::Matrix3d view_rotation(const View& view, const Vec3& up, const Vec3& front) {
   const Vec3 u = up.normalized(), left = u.cross(front.normalized());
   if (!(up.norm() > 0) || !(front.norm() > 0) || !(left.norm() > 1e-6))

@@ -19,6 +19,9 @@ struct View {
 /// @throws UserError  anything else, or no view at all
 std::vector<View> parse_views(const std::string& text);
 
+/// The angle between two directions of view, degrees.
+double angle_between(const View& a, const View& b);
+
 /// A camera of width x height pixels. Its frame: x right, y up, z towards the
 /// viewer. Pixels: x right, y down, the first one's centre at (0.5, 0.5).
 /// Depth: world units from the eye along the viewing direction, growing away.

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "parts/base/error.h"
 #include "parts/base/memory.h"
 #include "parts/mesh/attributes.h"
+#include "parts/render/check_memory.h"
 #include "parts/render/pixel_faces.h"
 
 namespace parts::render {
@@ -91,12 +91,8 @@ void check_input(const cv::Mat& depth, const cv::Mat& back, const Camera& camera
     throw UserError(
         "Some depths are negative, where a pinhole camera sees nothing; change the sign of DepthScale, or "
         "set FocalLength to 0.");
-  const double bytes = kBytesPerPixel * seen * (back.empty() ? 1 : 2), free = available_memory();
-  if (free > 0 && bytes > free) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.1f GB of memory, and %.1f GB are free", bytes / 1e9, free / 1e9);
-    throw UserError("A mesh of this depth raster needs " + std::string(text) + "; make the raster smaller.");
-  }
+  check_memory("A mesh of this depth raster", kBytesPerPixel * seen * (back.empty() ? 1 : 2), available_memory(),
+               "make the raster smaller");
 }
 
 /// Turns faces between pixels into a mesh.

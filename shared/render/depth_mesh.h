@@ -18,7 +18,7 @@ struct DepthMeshOptions {
 struct DepthMesh {
   Mesh mesh;              ///< oriented towards the camera, with normals and, per face, texture coordinates
   double max_jump = 0;    ///< that was used
-  long torn = 0;          ///< pairs of neighbouring pixels that were torn apart
+  long torn = 0;          ///< pixels that were torn from a neighbour
   int dropped_faces = 0;  ///< of the fringes between torn surfaces
   int walls = 0;          ///< faces between front and back
   long back_before = 0;   ///< pixels whose back depth was missing or before the front

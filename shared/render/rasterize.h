@@ -2,28 +2,20 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <vector>
 
-#include "parts/mesh/mesh.h"
 #include "parts/render/camera.h"
+#include "parts/render/light.h"
+#include "parts/render/load_textures.h"
 
 namespace parts::render {
-
-/// A mesh's images as 8-bit BGR, each followed by its halves (a pyramid); an
-/// image that is missing or unreadable is an empty pyramid.
-struct Textures {
-  std::vector<std::vector<cv::Mat>> images;
-};
-Textures load_textures(const Mesh& mesh);
 
 struct RenderOptions {
   bool smooth = true;              ///< normals of vertices (the mesh's own, or means); false: of faces
   bool colors = true;              ///< the mesh's texture, else vertex, else face colours; false: base
   Color base{200, 200, 204, 255};  ///< where the mesh has no colour
   Color background{255, 255, 255, 255};
-  Vec3 light{0.3, 0.4, 0.85};    ///< direction to the light, camera frame, any length
-  double ambient = 0.35;         ///< 0..1, share of light that comes from everywhere
-  double sky = 0;                ///< 0..1, share of that which comes from above rather
+  Light light;
+  double sky = 0;                ///< 0..1, share of the light from everywhere that comes from above rather
   double rim = 0;                ///< 0..1, darkening towards silhouettes
   bool mark_back_faces = false;  ///< back faces reddish; else lit from both sides
   double edge_width = 0;         ///< pixels; > 0 draws the edges of faces

@@ -13,11 +13,6 @@ namespace {
 
 using Vec3f = Eigen::Vector3f;
 
-Vec3f face_normal(const Mesh& mesh, int f) {
-  const Vec3& a = mesh.corner(f, 0);
-  return (mesh.corner(f, 1) - a).cross(mesh.corner(f, 2) - a).normalized().cast<float>();
-}
-
 /// Mean normals (by area) of the vertices of visible faces; few of a fine mesh.
 std::vector<Vec3f> normals_of_visible(const Mesh& mesh, const cv::Mat& face) {
   std::vector<char> visible(mesh.vertices.size(), 0);
@@ -31,8 +26,7 @@ std::vector<Vec3f> normals_of_visible(const Mesh& mesh, const cv::Mat& face) {
   for (int f = 0; f < mesh.face_count(); ++f) {
     const Triangle& t = mesh.faces[f];
     if (!(visible[t[0]] | visible[t[1]] | visible[t[2]])) continue;
-    const Vec3& a = mesh.vertices[t[0]];
-    const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+    const Vec3 n = mesh.area_vector(f);
     if (!n.allFinite()) continue;
     for (int v : t) {
       if (!visible[v]) continue;
@@ -77,8 +71,9 @@ class Shader {
 
  private:
   static Vec3f light_of(const RenderOptions& options) {
-    const double length = options.light.norm();
-    return length > 0 && std::isfinite(length) ? Vec3f((options.light / length).cast<float>()) : Vec3f(0, 0, 1);
+    const double length = options.light.direction.norm();
+    return length > 0 && std::isfinite(length) ? Vec3f((options.light.direction / length).cast<float>())
+                                               : Vec3f(0, 0, 1);
   }
   static double cross(const ScreenPoint& p, const ScreenPoint& q, double x, double y) {
     return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
@@ -88,13 +83,13 @@ class Shader {
     const Triangle& t = mesh_.faces[face];
     Vec3f n = Vec3f::Zero();
     if (!normals_.empty()) n = w[0] * normals_[t[0]] + w[1] * normals_[t[1]] + w[2] * normals_[t[2]];
-    if (!(n.squaredNorm() > 1e-12f)) n = face_normal(mesh_, face);
+    if (!(n.squaredNorm() > 1e-12f)) n = mesh_.normal(face).cast<float>();
     n = (rotation_ * n).normalized();
     return front ? n : Vec3f(-n);
   }
 
   float light(const Vec3f& n) const {
-    const float ambient = float(options_.ambient), sky = float(options_.sky), rim = float(options_.rim);
+    const float ambient = float(options_.light.ambient), sky = float(options_.sky), rim = float(options_.rim);
     const float diffuse = (1 - ambient) * std::max(0.f, n.dot(light_));
     const float slant = 1 - std::clamp(n.z(), 0.f, 1.f);
     return (ambient * (1 - sky * 0.5f * (1 - n.y())) + diffuse) * (1 - rim * slant * slant);

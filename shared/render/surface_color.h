@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
-#include "parts/mesh/mesh.h"
+#include "parts/render/load_textures.h"
 
 namespace parts::render {
-
-struct Textures;
 
 /// B, G and R, 0..255.
 Eigen::Vector3f bgr(const Color& c);

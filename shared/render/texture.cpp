@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "parts/base/error.h"
+#include "parts/render/mask.h"
 
 namespace parts::render {
 namespace {
@@ -45,16 +45,12 @@ bool shows_as_texture(const std::string& path, const io::Image& image) {
 }
 
 cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask) {
-  cv::Mat out = color.clone(), distance, labels;
+  cv::Mat out = color.clone();
   if (cv::countNonZero(mask) == 0) return out;
-  cv::distanceTransform(mask == 0, distance, labels, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
-  std::vector<cv::Vec3b> of_label(std::size_t(mask.total()) + 1);
+  const cv::Mat nearest = nearest_foreground(mask);
   for (int y = 0; y < mask.rows; ++y)
     for (int x = 0; x < mask.cols; ++x)
-      if (mask.at<uchar>(y, x)) of_label[labels.at<int>(y, x)] = color.at<cv::Vec3b>(y, x);
-  for (int y = 0; y < mask.rows; ++y)
-    for (int x = 0; x < mask.cols; ++x)
-      if (!mask.at<uchar>(y, x)) out.at<cv::Vec3b>(y, x) = of_label[labels.at<int>(y, x)];
+      if (!mask.at<uchar>(y, x)) out.at<cv::Vec3b>(y, x) = color.at<cv::Vec3b>(cv::Point(nearest.at<cv::Vec2i>(y, x)));
   return out;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parts/synthesis/options.h"
+#include "parts/synthesis/patch_image.h"
 #include "parts/synthesis/search.h"
 
 namespace parts::synthesis {

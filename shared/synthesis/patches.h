@@ -6,8 +6,6 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "parts/synthesis/synthesis.h"
-
 namespace parts::synthesis {
 
 /// Windows are compared four channels at a time.

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
+#include <string>
 
+#include "parts/base/error.h"
 #include "parts/synthesis/level.h"
 #include "parts/synthesis/pyramid.h"
 
@@ -22,6 +25,18 @@ void check_image(const PatchImage& image, const std::string& what, const std::ve
     if (image.planes[p].size() != image.mask.size())
       throw UserError("The images of " + what + " differ in size; give an image, a depth and a mask of one size.");
   }
+}
+
+void check_channels(const SynthesisOptions& options, int planes) {
+  if (options.channels.empty() || options.channels.size() > size_t(most_channels))
+    throw std::invalid_argument("synthesize: " + std::to_string(options.channels.size()) + " channels; give 1 to " +
+                                std::to_string(most_channels));
+  std::vector<int> used = options.synthesized;
+  for (const PatchChannel& channel : options.channels) used.push_back(channel.plane);
+  for (int plane : used)
+    if (plane < 0 || plane >= planes)
+      throw std::invalid_argument("synthesize: plane " + std::to_string(plane) + " of examples that have " +
+                                  std::to_string(planes));
 }
 
 // Windows' sides a level, coarse to fine; more levels for larger images.
@@ -297,6 +312,9 @@ SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage
   if (examples.empty()) throw UserError("There is no example; give a database with at least one.");
   check_image(query, "the query", options.synthesized);
   for (size_t k = 0; k < examples.size(); ++k) check_image(examples[k], "example " + std::to_string(k), {});
+  size_t planes = examples.front().planes.size();
+  for (const PatchImage& e : examples) planes = std::min(planes, e.planes.size());
+  check_channels(options, int(planes));
   return Optimizer(query, examples, options, update, agree).run(progress);
 }
 

@@ -105,7 +105,7 @@ std::string folder(const std::string& name) { return std::string(PARTS_DATA) + "
 
 examples::ExampleOptions unlit(int width, int height) {
   examples::ExampleOptions o;
-  o.width = width, o.height = height, o.ambient = 1, o.back = false;
+  o.width = width, o.height = height, o.light.ambient = 1, o.back = false;
   return o;
 }
 

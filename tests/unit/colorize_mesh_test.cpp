@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "parts/base/error.h"
+#include "parts/colorize/hidden_colors.h"
 #include "parts/io/mesh_io.h"
+#include "parts/render/atlas.h"
+#include "parts/render/check_memory.h"
 #include "support/shapes.h"
 
 namespace parts::test {
@@ -45,7 +49,7 @@ class ColorizeMeshTest : public ::testing::Test {
     fs::create_directories(folder_);
     options_.views = render::parse_views("0,0; 90,0; 180,0; -90,0; 0,80; 0,-80");
     options_.rendering.width = 60, options_.rendering.height = 80;
-    options_.rendering.ambient = 1, options_.rendering.back = false;
+    options_.rendering.light.ambient = 1, options_.rendering.back = false;
     options_.patch_sizes = {5, 7};
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -77,6 +81,50 @@ TEST_F(ColorizeMeshTest, ColorsComeToTheirPlacesAllAround) {
   EXPECT_EQ(colors.used.size(), 2u);
   for (const auto& level : colors.objective)
     for (std::size_t i = 1; i < level.size(); ++i) EXPECT_GE(level[i], level[i - 1] - 1e-6);
+}
+
+TEST_F(ColorizeMeshTest, ProgressNeverRunsBackwards) {
+  model("a.ply", painted(egg(0.3)));
+  Progress silent;
+  examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
+  std::vector<int> percents;
+  Progress progress([&](int percent, const char*) { return percents.push_back(percent), true; });
+  colorize::colorize_mesh(egg(0.4), models, options_, progress);
+  EXPECT_TRUE(std::is_sorted(percents.begin(), percents.end()));
+}
+
+TEST(HiddenColors, WhatCannotBeContinuedIsSaid) {
+  examples::ClassModel model;
+  model.mesh = sphere(Vec3::Zero(), 1, 3);
+  model.mesh.vertex_color.assign(model.mesh.vertices.size(), {200, 200, 200, 255});
+  const Mesh query = sphere(Vec3::Zero(), 1, 3);
+  std::vector<char> known;
+  for (const Vec3& v : query.vertices) known.push_back(v.z() > 0);
+  const Eigen::Vector3f darker(100 / 255.f, 128 / 255.f, 128 / 255.f);
+  std::vector<Eigen::Vector3f> color(known.size(), darker);
+  EXPECT_TRUE(colorize::complete_colors(query, known, model, color, 1));
+  for (const Eigen::Vector3f& c : color) EXPECT_NEAR(c[0], darker[0], 0.03);
+
+  color.assign(known.size(), darker);
+  for (std::size_t v = 0; v < known.size(); ++v)
+    if (known[v]) color[v].setConstant(std::nanf(""));
+  EXPECT_FALSE(colorize::complete_colors(query, known, model, color, 1));
+  for (std::size_t v = 0; v < known.size(); ++v) {
+    if (known[v]) continue;
+    EXPECT_NEAR(color[v][0], 200 / 255.f, 1e-3) << "the model's own";
+  }
+}
+
+TEST(CheckMemory, WhatIsNotKnownRefusesNothing) {
+  EXPECT_NO_THROW(render::check_memory("A texture", 1e15, {}, "choose a smaller one"));
+  EXPECT_NO_THROW(render::check_memory("A texture", 1e15, 0, "choose a smaller one"));
+  EXPECT_NO_THROW(render::check_memory("A texture", 1e6, 1e6, "choose a smaller one"));
+  try {
+    render::check_memory("A texture", 3e9, 2e6, "choose a smaller one");
+    ADD_FAILURE();
+  } catch (const UserError& e) {
+    EXPECT_STREQ(e.what(), "A texture needs about 3.0 GB of memory, and 0.0 GB are free; choose a smaller one.");
+  }
 }
 
 TEST_F(ColorizeMeshTest, AnotherUnitPlaceAndStance) {

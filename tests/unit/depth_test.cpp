@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "parts/base/error.h"
 #include "parts/depth/alignment.h"
@@ -40,7 +42,7 @@ class Busts : public examples::ExampleSource {
 
   static examples::Example see(int k, const render::View& view, const examples::Light& light = {}) {
     examples::ExampleOptions o = options();
-    o.light = light.direction, o.ambient = light.ambient;
+    o.light = light;
     return examples::render_example(model(k), view, 36, o);
   }
 
@@ -145,7 +147,7 @@ TEST(Depth, FindsTheView) {
     depth::DepthOptions o;
     o.align = false;
     const depth::DepthResult r = run({truth.image, truth.mask}, others, o);
-    found += examples::angle_between(r.view, view) < 8;
+    found += render::angle_between(r.view, view) < 8;
   }
   EXPECT_GE(found, 2);
 }
@@ -167,6 +169,40 @@ TEST(Depth, FindsTheLight) {
     EXPECT_EQ(run({same.image, same.mask}, others, known_view()).light->direction, examples::Light().direction);
   }
   EXPECT_LT(with, 0.8 * without);
+}
+
+TEST(Depth, TheSourceKeepsItsLightAlsoWhenItFails) {
+  /// Fails to give an example once its light has been changed for the n-th time.
+  struct Failing : Busts {
+    explicit Failing(int changes) : Busts(1), left(changes) {}
+    void set_light(const examples::Light& light) override { --left, Busts::set_light(light); }
+    examples::Example get(int k, const render::View& view) override {
+      if (left <= 0) throw UserError("gone");
+      return Busts::get(k, view);
+    }
+    int left;
+  };
+  const examples::Example truth = Busts::see(1, {0, 0}, {{-0.6, 0.1, 0.8}, 0.35});
+  for (int changes : {1, 2, 3}) {
+    Failing source(changes);
+    EXPECT_THROW(run({truth.image, truth.mask}, source, known_view()), UserError);
+    EXPECT_EQ(source.light()->direction, examples::Light().direction) << changes;
+    EXPECT_EQ(source.light()->ambient, examples::Light().ambient) << changes;
+  }
+}
+
+TEST(Depth, ProgressNeverRunsBackwards) {
+  Busts others(2);
+  const examples::Example truth = Busts::see(2, {10, 5});
+  depth::DepthOptions o;
+  o.back = o.segment = true;
+  std::vector<int> percents;
+  Progress progress([&](int percent, const char*) { return percents.push_back(percent), true; });
+  depth::reconstruct_depth({truth.image, truth.mask}, others, o, progress);
+  EXPECT_TRUE(std::is_sorted(percents.begin(), percents.end()));
+  EXPECT_GE(percents.front(), 0);
+  EXPECT_LE(percents.back(), 100);
+  EXPECT_GT(std::set<int>(percents.begin(), percents.end()).size(), 15u);
 }
 
 TEST(Depth, TheBackIsBehindTheFront) {
@@ -248,6 +284,9 @@ TEST(Depth, SaysWhatIsWrong) {
   EXPECT_THROW(run({e.image, cv::Mat::zeros(e.mask.size(), CV_8U)}, all, o), UserError);
   depth::DepthOptions bad = o;
   bad.intensity = -1;
+  EXPECT_THROW(run({e.image, e.mask}, all, bad), UserError);
+  bad = o;
+  bad.patch_sizes = {};
   EXPECT_THROW(run({e.image, e.mask}, all, bad), UserError);
   bad = o;
   bad.patch_sizes = {5, 6};

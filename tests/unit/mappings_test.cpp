@@ -124,10 +124,10 @@ TEST(MlpCamera, WhatIsNoCamera) {
 }
 
 TEST(Views, AnglesBetween) {
-  EXPECT_NEAR(examples::angle_between({10, 0}, {40, 0}), 30, 1e-9);
-  EXPECT_NEAR(examples::angle_between({0, -20}, {0, 15}), 35, 1e-9);
-  EXPECT_NEAR(examples::angle_between({0, 90}, {123, 90}), 0, 1e-6);
-  EXPECT_NEAR(examples::angle_between({170, 0}, {-170, 0}), 20, 1e-9);
+  EXPECT_NEAR(render::angle_between({10, 0}, {40, 0}), 30, 1e-9);
+  EXPECT_NEAR(render::angle_between({0, -20}, {0, 15}), 35, 1e-9);
+  EXPECT_NEAR(render::angle_between({0, 90}, {123, 90}), 0, 1e-6);
+  EXPECT_NEAR(render::angle_between({170, 0}, {-170, 0}), 20, 1e-9);
 }
 
 TEST_F(Mappings, ModelsAreFramedAlike) {

@@ -104,7 +104,7 @@ Mesh square() {
 
 render::RenderOptions unlit() {
   render::RenderOptions options;
-  options.ambient = 1;
+  options.light.ambient = 1;
   return options;
 }
 
@@ -150,8 +150,8 @@ TEST(Rasterize, ColorsOfVerticesAndFaces) {
 TEST(Rasterize, LightAndBackFaces) {
   const Mesh mesh = square();
   render::RenderOptions options;
-  options.light = {0, 0, 4};
-  options.ambient = 0.25;
+  options.light.direction = {0, 0, 4};
+  options.light.ambient = 0.25;
   options.base = {200, 200, 200, 255};
   const auto middle = [&](double yaw) {
     return render::render(mesh, {}, facing(mesh, 20, 20, yaw), options).image.at<cv::Vec3b>(10, 10);
@@ -162,7 +162,7 @@ TEST(Rasterize, LightAndBackFaces) {
   options.mark_back_faces = true;
   EXPECT_EQ(middle(0), cv::Vec3b(200, 200, 200));
   EXPECT_GT(middle(180)[2], middle(180)[0] + 50);
-  options.light = {0, 0, -1};
+  options.light.direction = {0, 0, -1};
   EXPECT_NEAR(middle(0)[0], 50, 1);
 }
 

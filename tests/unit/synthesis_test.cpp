@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "parts/synthesis/level.h"
 #include "parts/synthesis/pyramid.h"
@@ -250,6 +251,26 @@ TEST(Synthesis, SaysWhatIsWrong) {
   std::vector<synthesis::PatchImage> mixed = list;
   mixed[1].planes[1] = mixed[1].planes[1].rowRange(0, 20).clone();
   EXPECT_THROW(run(query, mixed, depth_options()), UserError);
+}
+
+TEST(Synthesis, ChannelsAreCheckedAtTheDoor) {
+  const synthesis::PatchImage query = without_depth(bumps(1));
+  const std::vector<synthesis::PatchImage> list = examples(2);
+  synthesis::SynthesisOptions o = depth_options();
+  while (int(o.channels.size()) < synthesis::most_channels) o.channels.push_back({0, 0.01, false, false});
+  EXPECT_NO_THROW(run(query, list, o));
+  for (int more = 0; more < 2; ++more) {  // 12 channels and the silhouette are one more than fit
+    o.channels.push_back({0, 0.01, false, false});
+    EXPECT_THROW(run(query, list, o), std::invalid_argument);
+  }
+  o.channels = {};
+  EXPECT_THROW(run(query, list, o), std::invalid_argument);
+  o = depth_options();
+  o.channels.push_back({2, 1, false, false});
+  EXPECT_THROW(run(query, list, o), std::invalid_argument);
+  o = depth_options();
+  o.synthesized = {-1};
+  EXPECT_THROW(run(query, list, o), std::invalid_argument);
 }
 
 TEST(Synthesis, StopsWhenAsked) {
