@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,7 +13,8 @@
 namespace parts {
 
 /// How a long computation speaks to its caller: stage, share done, measured
-/// figures; and how the caller stops it. A default-made one is silent.
+/// figures; and how the caller stops it. A default-made one is silent. The share
+/// reported never falls, also where a step is tried again.
 class Progress {
  public:
   /// @param report called with (percent 0..100, stage); false means cancel
@@ -19,7 +23,14 @@ class Progress {
   using Log = std::function<void(const std::string& line)>;
 
   Progress() = default;
-  explicit Progress(Report report, Log log = {}) : report_(std::move(report)), log_(std::move(log)) {}
+  explicit Progress(Report report, Log log = {}) : log_(std::move(log)) {
+    if (!report) return;
+    report_ = [report = std::move(report), reached = std::make_shared<std::atomic<int>>(0)](int percent,
+                                                                                            const char* name) {
+      *reached = std::max(reached->load(), percent);
+      return report(*reached, name);
+    };
+  }
 
   /// Enters a stage that covers [from, to] percent of the whole.
   void stage(const char* name, int from, int to) {
@@ -32,10 +43,12 @@ class Progress {
   }
   /// A view of this one for a step that covers [from, to] percent of it.
   Progress part(int from, int to) const {
-    if (!report_) return Progress({}, log_);
-    return Progress([report = report_, from, to](
-                        int percent, const char* name) { return report(from + percent * (to - from) / 100, name); },
-                    log_);
+    Progress view({}, log_);
+    if (report_)
+      view.report_ = [report = report_, from, to](int percent, const char* name) {
+        return report(from + percent * (to - from) / 100, name);
+      };
+    return view;
   }
   void log(const std::string& line) {
     if (log_) log_(line);
