@@ -98,7 +98,7 @@ void measure_edges(const Mesh& mesh, SurfaceFigures& s) {
   }
 }
 
-void measure_volume(const Mesh& mesh, const std::vector<std::vector<int>>& borders, SurfaceFigures& s) {
+void measure_volume(const Mesh& mesh, const std::vector<Loop>& borders, SurfaceFigures& s) {
   const Box box = mesh.bounds();
   if (box.isEmpty()) return;
   const Vec3 middle = box.center();  // large coordinates cancel
@@ -107,7 +107,7 @@ void measure_volume(const Mesh& mesh, const std::vector<std::vector<int>>& borde
     area += mesh.area(f);
     six += (mesh.corner(f, 0) - middle).dot((mesh.corner(f, 1) - middle).cross(mesh.corner(f, 2) - middle));
   }
-  for (const std::vector<int>& border : borders) {
+  for (const Loop& border : borders) {
     Vec3 hub = Vec3::Zero();
     for (int v : border) hub += (mesh.vertices[v] - middle) / double(border.size());
     for (std::size_t i = 0; i < border.size(); ++i) {
@@ -155,7 +155,7 @@ SurfaceFigures measure_surface(const Mesh& mesh, int threads) {
   SurfaceFigures s;
   const Mesh surface = welded(mesh, s);
   measure_edges(surface, s);
-  const std::vector<std::vector<int>> borders = boundary_loops(surface, edge_map(surface));
+  const std::vector<Loop> borders = boundary_loops(surface, edge_map(surface));
   s.borders = int(borders.size());
   measure_volume(surface, borders, s);
   measure_crossings(surface, threads, s);
