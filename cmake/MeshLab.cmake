@@ -6,10 +6,11 @@
 # MeshLab's headers (with vcglib), which no Debian binary package carries.
 if(NOT MESHLAB_HEADERS)
   execute_process(
-    COMMAND "${CMAKE_CURRENT_LIST_DIR}/fetch-meshlab-headers.sh"
-    OUTPUT_VARIABLE MESHLAB_HEADERS OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
+    COMMAND "${CMAKE_CURRENT_LIST_DIR}/fetch-meshlab-headers.sh" --fetched
+    OUTPUT_VARIABLE MESHLAB_HEADERS OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE why RESULT_VARIABLE failed)
   if(failed)
-    message(FATAL_ERROR "MeshLab's headers are missing, see above.")
+    string(STRIP "${why}" why)
+    message(FATAL_ERROR "${why}")
   endif()
   set(MESHLAB_HEADERS "${MESHLAB_HEADERS}" CACHE PATH "Folder with MeshLab's src/common and vcglib")
 endif()
@@ -83,7 +84,7 @@ function(add_meshlab_filter name)
     INSTALL_RPATH "$ORIGIN/..")
   # MeshLab resolves symbols late: a missing one must fail here, not on the user's click.
   target_link_options(${name} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
-  install(TARGETS ${name} LIBRARY DESTINATION "${MESHLAB_PLUGIN_DIR}")
+  install(TARGETS ${name} LIBRARY DESTINATION "${MESHLAB_PLUGIN_DIR}" COMPONENT plugins)
 endfunction()
 
 # add_uninstall_target(<plugin>...)

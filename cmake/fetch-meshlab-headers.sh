@@ -4,7 +4,8 @@
 # Prints the folder that holds MeshLab's headers (src/common, vcglib), which
 # Debian's meshlab package leaves out. They are downloaded once from Debian's
 # source package of the same version, through the machine's own apt sources,
-# without touching its apt lists: no root needed.
+# without touching its apt lists: no root needed. With --fetched nothing is
+# downloaded: it fails where they are not there yet.
 set -euo pipefail
 
 fail() { echo "$*" >&2; exit 1; }
@@ -18,6 +19,9 @@ if [[ -f $headers/src/common/interfaces.h && -d $headers/vcglib/vcg ]]; then
   echo "$headers"
   exit 0
 fi
+
+[[ ${1:-} != --fetched ]] ||
+  fail "MeshLab's headers for version $version are not there yet; './run setup' fetches them, or give a folder by -DMESHLAB_HEADERS=FOLDER."
 
 mkdir -p "$cache" 2>/dev/null || fail "The folder $cache cannot be written; set XDG_CACHE_HOME to one that can."
 free=$(df --output=avail -m "$cache" | tail -1)

@@ -87,6 +87,7 @@ Outcome align_layer(const Inputs& inputs, Progress& progress) {
   options.allow_scale = inputs.flag("AllowScale");
   options.allow_mirror = inputs.flag("AllowMirror");
   options.max_iterations = inputs.integer("MaxIterations");
+  options.less_overlap = inputs.number("Overlap") == options.overlap;  // nobody has said how much
   options.overlap = inputs.number("Overlap");
   const bool to_vertices = inputs.choice("ApplyTo") == 1, selected = inputs.flag("OnlySelected");
 
@@ -103,6 +104,8 @@ Outcome align_layer(const Inputs& inputs, Progress& progress) {
   log_value(progress, "inlier_share", result.inlier_share);
   log_value(progress, "iterations", result.iterations);
   log_value(progress, "candidates", result.candidates);
+  log_value(progress, "overlap", result.overlap);
+  for (const std::string& doubt : result.doubts) log_value(progress, "warning", doubt);
 
   Outcome outcome;
   outcome.placed.push_back({moving, result.matrix, to_vertices});

@@ -6,12 +6,15 @@
 build_packages=(
   g++ cmake ninja-build dpkg-dev
   meshlab qtbase5-dev libqt5opengl5-dev libglew-dev libglu1-mesa-dev
-  libeigen3-dev libflann-dev liblz4-dev libmaxflow-dev libexpat1-dev
+  libeigen3-dev libtbb-dev libnanoflann-dev libmaxflow-dev libexpat1-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libgtest-dev)
 run_packages=(xvfb libgl1-mesa-dri python3 python3-numpy python3-pil libcgal-demo)
-bench_packages=(libcgal-dev)
+bench_packages=(libcgal-dev libflann-dev liblz4-dev libembree-dev)
 format_packages=(clang-format-14)
+tidy_packages=(clang-tidy-14)
+coverage_packages=(gcovr)
+reference_packages=(doxygen)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

@@ -6,6 +6,7 @@
 
 #include "parts/align/coarse_poses.h"
 #include "parts/align/comparison.h"
+#include "parts/align/roughness.h"
 #include "parts/base/error.h"
 #include "parts/base/parallel.h"
 #include "parts/base/tasks.h"
@@ -46,9 +47,12 @@ struct Candidate {
 
 class Search {
  public:
-  Search(const spatial::Surface& moving, const spatial::Surface& fixed, const AlignOptions& options, Progress& progress)
+  /// @param noise  how far from each other surfaces that match may lie, in the moving surface's unit
+  Search(const spatial::Surface& moving, const spatial::Surface& fixed, double noise, const AlignOptions& options,
+         Progress& progress)
       : options_(options),
         progress_(progress),
+        noise_(noise),
         threads_(thread_count(options.threads)),
         moving_(moving),
         fixed_(fixed),
@@ -69,6 +73,7 @@ class Search {
 
   const AlignOptions& options_;
   Progress& progress_;
+  double noise_;
   int threads_;
   const spatial::Surface &moving_, &fixed_;
   Comparison compare_;
@@ -206,11 +211,10 @@ AlignResult Search::result(const Candidate& chosen) const {
   };
   const std::vector<double> before = compare_.distances(current(), threads_),
                             after = compare_.distances(pose, threads_);
-  const double rms = trimmed_rms(after);
   r.rms_before = trimmed_rms(before) * fixed_.size;
-  r.rms_after = rms * fixed_.size;
-  const double match = std::max(3 * rms, 1e-3 * pose.scale);
-  r.inlier_share = double(std::upper_bound(after.begin(), after.end(), match) - after.begin()) / double(after.size());
+  r.rms_after = trimmed_rms(after) * fixed_.size;
+  r.inlier_share = compare_.share_within(noise_ * pose.scale, pose, threads_);
+  r.overlap = options_.overlap;
   return r;
 }
 
@@ -227,20 +231,74 @@ AlignResult Search::run() {
   return r;
 }
 
+/// Whether as much of the part lies on the fixed one as should.
+bool matches(const AlignResult& r) { return r.inlier_share >= 0.8 * r.overlap; }
+
+/// Looks anew with ever less overlap, and takes the first place at which all of
+/// it matches, if that is clearly more than matches now.
+AlignResult with_less_overlap(AlignResult found, const spatial::Surface& m, const spatial::Surface& f, double noise,
+                              AlignOptions options, Progress& progress) {
+  constexpr double kOverlaps[] = {0.7, 0.5, 0.3}, kMore = 0.1;
+  int percent = 40;
+  for (const double overlap : kOverlaps) {
+    if (overlap >= found.overlap) continue;
+    options.overlap = overlap;
+    Progress part = progress.part(percent, percent + 19);
+    percent += 19;
+    AlignResult r = Search(m, f, noise, options, part).run();
+    if (matches(r) && r.inlier_share > found.inlier_share + kMore) return r;
+  }
+  return found;
+}
+
+std::string percents(double share) { return std::to_string(int(std::lround(100 * share))) + " %"; }
+
+/// A factor in words: "about 1000".
+std::string about(double factor) {
+  const double step = std::pow(10, std::floor(std::log10(factor)) - 1);
+  return "about " + std::to_string(std::llround(std::round(factor / step) * step));
+}
+
+std::vector<std::string> doubts_of(const AlignResult& r, double size_ratio, const AlignOptions& options) {
+  constexpr double kOtherUnit = 20;
+  std::vector<std::string> doubts;
+  const double factor = std::max(size_ratio, 1 / size_ratio);
+  if (!options.allow_scale && factor > kOtherUnit)
+    doubts.push_back("The moving part is " + about(factor) + " times as " + (size_ratio > 1 ? "large" : "small") +
+                     " as the fixed one; if their units differ, switch AllowScale on or scale one of them first.");
+  if (!matches(r))
+    doubts.push_back("Only " + percents(r.inlier_share) + " of the moving part lie on the fixed one where " +
+                     percents(r.overlap) +
+                     " should; look at the place, and select the parts that match, give their Overlap, or place the "
+                     "layer roughly by hand first.");
+  else if (r.overlap < options.overlap)
+    doubts.push_back("Only about " + percents(r.overlap) +
+                     " of the moving part seem to have a counterpart, and it was placed by those; look at the place.");
+  return doubts;
+}
+
 }  // namespace
 
 AlignResult align_part_in_whole(const Mesh& moving, const std::vector<char>& moving_part, const Mesh& fixed,
                                 const std::vector<char>& fixed_part, const AlignOptions& options, Progress& progress) {
   if (!(options.overlap > 0 && options.overlap <= 1))
     throw UserError("The overlap must be above 0 and at most 1: set the share of the part that should match.");
-  progress.stage("Measuring the parts", 0, 10);
+  const bool may_look_anew = options.less_overlap && options.coarse;
+  const int first_share = may_look_anew ? 40 : 100;  // percent
+  progress.stage("Measuring the parts", 0, first_share / 10);
   const spatial::Surface m = spatial::make_surface(moving, moving_part, "moving");
   progress.at(0.3);
   const spatial::Surface f = spatial::make_surface(fixed, fixed_part, "fixed");
   progress.at(0.6);
-  Search search(m, f, options, progress);
+  constexpr double kNoise = 0.01, kMostNoise = 0.03;  // RMS radii of the moving part
+  const double fixed_size = options.allow_scale ? f.size : m.size;
+  const double rough = std::max(roughness(moving, moving_part) / m.size, roughness(fixed, fixed_part) / fixed_size);
+  const double noise = std::clamp(3 * rough, kNoise, kMostNoise);
   progress.at(1);
-  const AlignResult result = search.run();
+  Progress first = progress.part(0, first_share);
+  AlignResult result = Search(m, f, noise, options, first).run();
+  if (may_look_anew && !matches(result)) result = with_less_overlap(result, m, f, noise, options, progress);
+  result.doubts = doubts_of(result, m.size / f.size, options);
   progress.stage("Aligned", 100, 100);
   return result;
 }

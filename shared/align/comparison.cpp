@@ -92,4 +92,19 @@ std::vector<double> Comparison::distances(const Pose& pose, int threads) const {
   return d;
 }
 
+double Comparison::share_within(double distance, const Pose& pose, int threads) const {
+  const std::vector<spatial::Sample>& samples = moving_samples_[pose.mirrored];
+  std::vector<char> lies_on(samples.size(), 0);
+  parallel_for(long(samples.size()), threads, [&](long begin, long end) {
+    int hint = 0;
+    for (long i = begin; i < end; ++i) {
+      const Vec3 p = pose(samples[i].point);
+      const spatial::Closest c = fixed_tree_.closest(p, hint);
+      lies_on[i] =
+          (c.point - p).norm() <= distance && std::abs(c.normal.dot(pose.rotation * samples[i].normal)) > M_SQRT1_2;
+    }
+  });
+  return double(std::count(lies_on.begin(), lies_on.end(), 1)) / double(samples.size());
+}
+
 }  // namespace parts::align

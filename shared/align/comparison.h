@@ -37,6 +37,10 @@ class Comparison {
   /// Distances from the fixed surface, sorted, in its unit; one a sample of the moving one.
   std::vector<double> distances(const Pose& pose, int threads) const;
 
+  /// The share of the moving samples that lie within a distance (in the fixed
+  /// surface's unit) of the fixed surface, their normals within 45 degrees of its.
+  double share_within(double distance, const Pose& pose, int threads) const;
+
   const std::vector<spatial::Sample>& moving_samples(bool mirrored) const { return moving_samples_[mirrored]; }
   const std::vector<spatial::Sample>& fixed_samples() const { return fixed_samples_[0]; }
 

@@ -32,7 +32,7 @@ cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit
 double relief_spread(const synthesis::PatchImage& image);
 
 /// The objects that may give colours, by their numbers: all, or those named.
-/// @param name  of each object; labels may leave the file's ending out
+/// @param names  of each object; labels may leave the file's ending out
 /// @throws UserError  a label that no object has
 std::vector<int> choosable(const std::vector<std::string>& names, const std::vector<std::string>& labels);
 

@@ -3,32 +3,18 @@
 
 #include "parts/base/error.h"
 #include "parts/cut/rasterize.h"
+#include "parts/spatial/triangle.h"
 
 namespace parts::compose {
 namespace {
 
-/// Squared distance from a point to a triangle (its nearest point by Ericson's regions).
-double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
-  if (n.squaredNorm() > 0) {
-    const Vec3 q = p - a;
-    const double u = q.cross(ac).dot(n) / n.squaredNorm(), v = ab.cross(q).dot(n) / n.squaredNorm();
-    if (u >= 0 && v >= 0 && u + v <= 1) return std::pow(q.dot(n), 2) / n.squaredNorm();
-  }
-  const auto to_segment = [&](const Vec3& s, const Vec3& e) {
-    const double length = (e - s).squaredNorm();
-    const double t = length > 0 ? std::clamp((p - s).dot(e - s) / length, 0.0, 1.0) : 0;
-    return (s + t * (e - s) - p).squaredNorm();
-  };
-  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-}
-
 void mark_nearest(const Mesh& mesh, const Vec3& point, std::vector<char>& keep) {
   int nearest = -1;
   double least = 1e300;
-  for (int f = 0; f < mesh.face_count(); ++f)
-    if (const double d = squared_distance(point, mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)); d < least)
-      least = d, nearest = f;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 closest = spatial::closest_on_triangle({mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)}, point);
+    if (const double d = (closest - point).squaredNorm(); d < least) least = d, nearest = f;
+  }
   if (nearest >= 0) keep[nearest] = 1;
 }
 

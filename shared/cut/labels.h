@@ -18,7 +18,7 @@ struct VoxelLabels {
 /// weight 1 where only boundary voxels meet, 1/(10k) at intersection voxels.
 /// Empty voxels can only break ties (all their edges together cost less than
 /// one other edge), so the graph is that of the non-empty voxels alone, with
-/// the lexicographic integers #I + 1 and 1 (#I: edges at intersection voxels).
+/// the lexicographic integers k + 1 and 1 (k: number of edges at intersection voxels).
 /// An outer piece is a node too; it parts from its voxels at intersections only.
 /// cost is the thesis' own sum over those edges.
 VoxelLabels thesis_cut(const JointVoxels& voxels);

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <flann/flann.hpp>
 
 #include "parts/base/median.h"
 #include "parts/base/parallel.h"
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/loops.h"
+#include "parts/spatial/point_tree.h"
 
 namespace parts::mend {
 namespace {
@@ -63,26 +63,19 @@ FitTarget::FitTarget(const Mesh& scan, const std::vector<char>& flaw, const Box&
 
 std::vector<FitTarget::Alike> FitTarget::most_alike(const std::vector<spatial::Sample>& points, double normals,
                                                     int threads) const {
-  const auto row = [&](const spatial::Sample& s, float* to) {
-    for (int d = 0; d < 3; ++d) to[d] = float(s.point[d]), to[3 + d] = float(normals * s.normal[d]);
+  using Tree = spatial::PointTree<6>;
+  const auto row = [&](const spatial::Sample& s) {
+    Tree::Point p;
+    for (int d = 0; d < 3; ++d) p[d] = float(s.point[d]), p[3 + d] = float(normals * s.normal[d]);
+    return p;
   };
-  std::vector<float> all(6 * points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i) row(points_[i].sample, &all[6 * i]);
-  flann::Matrix<float> rows(all.data(), points_.size(), 6);
-  flann::Index<flann::L2_Simple<float>> index(rows, flann::KDTreeSingleIndexParams());
-  index.buildIndex();
+  std::vector<Tree::Point> all;
+  all.reserve(points_.size());
+  for (const Alike& p : points_) all.push_back(row(p.sample));
+  const Tree tree(std::move(all));
   std::vector<Alike> found(points.size());
   parallel_for(long(points.size()), threads, [&](long begin, long end) {
-    for (long i = begin; i < end; ++i) {
-      std::array<float, 6> asked;
-      row(points[i], asked.data());
-      int nearest = 0;
-      float distance = 0;
-      flann::Matrix<float> query(asked.data(), 1, 6), distances(&distance, 1, 1);
-      flann::Matrix<int> indices(&nearest, 1, 1);
-      index.knnSearch(query, indices, distances, 1, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-      found[i] = points_[nearest];
-    }
+    for (long i = begin; i < end; ++i) found[i] = points_[tree.nearest(row(points[i])).index];
   });
   return found;
 }

@@ -46,7 +46,7 @@ class Correlation {
     Vec3 at;  ///< from the region's centre, query's frame
     double weight;
   };
-  /// @param to_voxels  query's frame to voxels: a rotation and a scale
+  /// @param to_voxels_one, to_voxels_two  query's frame to voxels: a rotation and a scale
   static Query query(const std::vector<Point>& points, const Size& size, const Eigen::Matrix3d& to_voxels_one,
                      const Eigen::Matrix3d& to_voxels_two);
 

@@ -270,6 +270,81 @@ TEST(Align, NeverWorseThanBefore) {
   }
 }
 
+/// What a scanner sees of a shape that stands at a yaw, with noise of a share of its size.
+Mesh seen_from(const Mesh& shape, double yaw, double noise, Random& random) {
+  const Vec3 at(std::sin(yaw), 0, std::cos(yaw));
+  Mesh scan;
+  std::vector<int> number(shape.vertices.size(), -1);
+  for (int f = 0; f < shape.face_count(); ++f) {
+    if (shape.normal(f).dot(at) < 0.25) continue;
+    scan.faces.push_back(shape.faces[f]);
+    for (int& v : scan.faces.back()) {
+      if (number[v] < 0) {
+        number[v] = scan.vertex_count();
+        scan.vertices.push_back(shape.vertices[v] + noise * size_of(shape) * random.uniform(0, 1) * random.direction());
+      }
+      v = number[v];
+    }
+  }
+  return scan;
+}
+
+TEST(Align, ScansThatShareLittleFindTheirPlaceOrItIsSaid) {
+  Random random(21);
+  align::AlignOptions options;
+  options.less_overlap = true;
+  int right = 0, silent = 0;
+  constexpr int kCases = 10;
+  for (int i = 0; i < kCases; ++i) {
+    const Mesh shape = i % 2 ? blob(4) : bust(unsigned(i + 1), 40);
+    const double yaw = random.uniform(-M_PI, M_PI), between = random.uniform(0.7, 1.4);  // they share about half
+    const Mesh a = seen_from(shape, yaw, 0.001, random), b = seen_from(shape, yaw + between, 0.001, random);
+    const Affine3d away = anywhere(random, size_of(shape));
+    const align::AlignResult r = align(moved(a, away), b, options);
+    const bool found = error(r, away, a) < 0.02;
+    right += found;
+    silent += !found && r.doubts.empty();
+    EXPECT_TRUE(found || !r.doubts.empty()) << "case " << i << ": wrong and not a word, inliers " << r.inlier_share;
+  }
+  EXPECT_EQ(silent, 0);
+  EXPECT_GE(right, kCases / 2);
+  RecordProperty("right", right);
+}
+
+TEST(Align, DoubtsAWrongPlaceAndNotARightOne) {
+  Random random(22);
+  for (const Shape& s : shapes()) {
+    Mesh noisy = s.mesh;
+    for (Vec3& v : noisy.vertices) v += random.uniform(0, 0.001) * size_of(s.mesh) * random.direction();
+    EXPECT_TRUE(align(moved(noisy, anywhere(random, 2)), s.mesh).doubts.empty()) << s.name;
+  }
+  const align::AlignResult wrong = align(man(32), blob(4));
+  EXPECT_LT(wrong.inlier_share, 0.5);
+  ASSERT_EQ(wrong.doubts.size(), 1u);
+  EXPECT_NE(wrong.doubts[0].find("Only "), std::string::npos);
+}
+
+TEST(Align, SaysWhenTheSizesAreThoseOfOtherUnits) {
+  Random random(23);
+  const Mesh shape = bust(1);
+  for (const double factor : {0.001, 1000.0}) {
+    Affine3d away = anywhere(random, 2);
+    away.linear() *= factor;
+    const Mesh other = moved(shape, away);
+    align::AlignOptions options;
+    const std::vector<std::string> doubts = align(other, shape, options).doubts;
+    ASSERT_FALSE(doubts.empty());
+    EXPECT_NE(doubts[0].find(factor < 1 ? "about 1000 times as small" : "about 1000 times as large"), std::string::npos)
+        << doubts[0];
+    options.allow_scale = true;
+    EXPECT_TRUE(align(other, shape, options).doubts.empty());
+  }
+  Affine3d twice = Affine3d::Identity();
+  twice.linear() *= 2;
+  for (const std::string& doubt : align(moved(shape, twice), shape).doubts)
+    EXPECT_EQ(doubt.find("units"), std::string::npos) << doubt;
+}
+
 TEST(Align, TheNumberOfThreadsDoesNotMatter) {
   Random random(13);
   const Mesh shape = bust(1), other = moved(bust(2), anywhere(random, 2));
@@ -295,8 +370,13 @@ TEST(Align, ProgressRisesAndCancels) {
     ++calls;
     return true;
   });
-  align::align_part_in_whole(man(32), {}, shape, {}, {}, watch);
-  EXPECT_EQ(last, 100);
+  align::AlignOptions less;
+  for (const bool anew : {true, false}) {
+    less.less_overlap = anew;
+    last = 0;
+    align::align_part_in_whole(man(32), {}, shape, {}, less, watch);
+    EXPECT_EQ(last, 100);
+  }
   ASSERT_GT(calls, 5);
   for (int stop = 1; stop <= 8; ++stop) {
     int left = stop;
