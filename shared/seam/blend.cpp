@@ -65,12 +65,14 @@ class Membrane {
 
  private:
   void number(const Band& band, double distance, const std::vector<char>& fixed);
+  Vec3 normal_at(int i) const;
   Eigen::MatrixX3d missing_bend(const Eigen::MatrixX3d& bend, const Eigen::VectorXd& area) const;
 
   const Mesh& mesh_;
   std::vector<int> free_;   ///< vertices of the mesh, in order
   std::vector<int> local_;  ///< vertices of the mesh that a face of the part has, the free ones first
   std::vector<Triangle> faces_;
+  std::vector<Vec3> normals_;             ///< per local vertex: its faces', twice their areas long
   std::vector<char> creased_, border_;    ///< per local vertex
   std::vector<std::vector<int>> around_;  ///< per local vertex that is creased
 };
@@ -82,6 +84,7 @@ Membrane::Membrane(const Mesh& mesh, const std::vector<char>& seam, const std::v
   std::vector<int> number_of(mesh.vertices.size(), -1);
   for (std::size_t i = 0; i < local_.size(); ++i) number_of[local_[i]] = int(i);
   creased_.assign(local_.size(), 0), border_.assign(local_.size(), 0), around_.resize(local_.size());
+  normals_.assign(local_.size(), Vec3::Zero());
   // The seam and what is next to it: its place was settled when the borders
   // became one, so neither its bend nor its neighbours' is any detail.
   for (int v : band.vertices) {
@@ -98,7 +101,10 @@ Membrane::Membrane(const Mesh& mesh, const std::vector<char>& seam, const std::v
         if (number_of[u] >= 0) around_[i].push_back(number_of[u]);
   for (const Triangle& f : mesh.faces) {
     const Triangle t{number_of[f[0]], number_of[f[1]], number_of[f[2]]};
-    if (t[0] >= 0 && t[1] >= 0 && t[2] >= 0) faces_.push_back(t);
+    if (t[0] < 0 || t[1] < 0 || t[2] < 0) continue;
+    faces_.push_back(t);
+    for (int k = 0; k < 3; ++k)
+      normals_[t[k]] += (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
   }
 }
 
@@ -122,8 +128,16 @@ void Membrane::number(const Band& band, double distance, const std::vector<char>
   }
 }
 
+/// Where the surface faces around a local vertex, on both sides of the seam.
+Vec3 Membrane::normal_at(int i) const {
+  Vec3 sum = normals_[i];
+  for (int u : around_[i]) sum += normals_[u];
+  return sum.normalized();
+}
+
 /// What the Laplacian of the positions lacks where the surface is creased: what
-/// lies around the crease goes on into it.
+/// lies around the crease goes on into it; along a border that the seam runs out
+/// to, what lies along the border.
 Eigen::MatrixX3d Membrane::missing_bend(const Eigen::MatrixX3d& bend, const Eigen::VectorXd& area) const {
   const int n = int(local_.size());
   Eigen::MatrixX3d curvature = area.cwiseInverse().asDiagonal() * bend;
@@ -136,12 +150,16 @@ Eigen::MatrixX3d Membrane::missing_bend(const Eigen::MatrixX3d& bend, const Eige
       Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
       int count = 0;
       for (int u : around_[i])
-        if (!border_[u]) sum += curvature.row(u), ++count;
+        if (border_[u] == border_[i]) sum += curvature.row(u), ++count;
       if (count) curvature.row(i) = sum / count;
     }
   Eigen::MatrixX3d missing = Eigen::MatrixX3d::Zero(n, 3);
-  for (int i = 0; i < n; ++i)
-    if (creased_[i] && !border_[i]) missing.row(i) = area[i] * curvature.row(i) - bend.row(i);
+  for (int i = 0; i < n; ++i) {
+    if (!creased_[i]) continue;
+    // Along the surface it would only drag uneven triangles about.
+    const Vec3 normal = normal_at(i);
+    missing.row(i) = normal.dot(area[i] * curvature.row(i).transpose() - bend.row(i).transpose()) * normal.transpose();
+  }
   return missing;
 }
 
@@ -157,9 +175,7 @@ std::vector<Vec3> Membrane::solve() const {
   const Eigen::VectorXd area = (l.area / std::max(l.area.head(m).mean(), 1e-300)).cwiseMax(kLeastArea);
   Eigen::MatrixX3d x(n, 3);
   for (int i = 0; i < n; ++i) x.row(i) = points[i].transpose();
-  Eigen::VectorXd weight = area.cwiseInverse();
-  for (int i = 0; i < n; ++i)
-    if (creased_[i] && border_[i]) weight[i] = 0;  // the seam ends there: nothing goes on
+  const Eigen::VectorXd weight = area.cwiseInverse();
   const Eigen::MatrixX3d missing = missing_bend(l.matrix * x, area);
 
   const Eigen::SparseMatrix<double> columns = l.matrix.leftCols(m);
