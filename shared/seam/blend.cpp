@@ -36,11 +36,20 @@ double share(std::vector<double> values, double part) {
   return *at;
 }
 
-double mean_edge_at(const Mesh& mesh, const std::vector<char>& seam) {
+/// Of the surfaces beside the seam: of faces next to those at it.
+double mean_edge_beside(const Mesh& mesh, const std::vector<char>& seam) {
+  std::vector<char> near = seam;
+  for (int ring = 0; ring < 3; ++ring) {
+    std::vector<char> wider = near;
+    for (const Triangle& f : mesh.faces)
+      if (near[f[0]] || near[f[1]] || near[f[2]])
+        for (int v : f) wider[v] = 1;
+    near.swap(wider);
+  }
   double sum = 0;
   long count = 0;
   for (const Triangle& f : mesh.faces)
-    if (seam[f[0]] || seam[f[1]] || seam[f[2]])
+    if (near[f[0]] && near[f[1]] && near[f[2]] && !seam[f[0]] && !seam[f[1]] && !seam[f[2]])
       for (int k = 0; k < 3; ++k) sum += (mesh.vertices[f[k]] - mesh.vertices[f[(k + 1) % 3]]).norm(), ++count;
   return count ? sum / double(count) : 0;
 }
@@ -206,31 +215,77 @@ long turned_over(const Mesh& before, const std::vector<Vec3>& after, const std::
 
 }  // namespace
 
-SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
-                     double gap) {
-  SeamBlend report;
-  const std::vector<double> angles = seam_angles(mesh, seam);
-  report.angle_before = report.angle_after = share(angles, 0.5);
-  report.distance = distance > 0 ? distance : natural_distance(angles, mean_edge_at(mesh, seam), gap);
-  if (!(report.distance > 0)) return report;
-  const Membrane membrane(mesh, seam, fixed, report.distance);
-  const std::vector<Vec3> offsets = membrane.solve();
-  if (offsets.empty()) return report;
+namespace {
+
+/// The surface around a seam, as far as blending has to know it.
+struct Neighbourhood {
+  Mesh mesh;
+  std::vector<int> vertex;        ///< per vertex: its number in the whole
+  std::vector<char> seam, fixed;  ///< per vertex; beyond the distance all are fixed
+  double reach;                   ///< world units; all that may move lies within, even when it has moved
+
+  Neighbourhood(const Mesh& whole, const std::vector<char>& all_seam, const std::vector<char>& all_fixed,
+                double distance)
+      : reach(2 * distance) {
+    const Band band = band_around(whole, all_seam, reach);
+    std::vector<int> number(whole.vertices.size(), -1);
+    const auto take = [&](int v) {
+      if (number[v] >= 0) return;
+      number[v] = int(vertex.size());
+      vertex.push_back(v), mesh.vertices.push_back(whole.vertices[v]);
+      seam.push_back(all_seam[v]), fixed.push_back(all_fixed[v] || !(band.away[v] < distance));
+    };
+    for (const Triangle& f : whole.faces) {
+      if (band.away[f[0]] == Band::kBeyond && band.away[f[1]] == Band::kBeyond && band.away[f[2]] == Band::kBeyond)
+        continue;
+      for (int v : f) take(v);
+      mesh.faces.push_back({number[f[0]], number[f[1]], number[f[2]]});
+    }
+  }
+};
+
+/// Adds as much of the offsets as does not fold the surface, or folds it least.
+void give_way(Mesh& mesh, const std::vector<int>& free, const std::vector<Vec3>& offsets) {
   std::vector<char> moved(mesh.vertices.size(), 0);
-  for (int v : membrane.free()) moved[v] = 1;
-  // Where a whole offset would fold the surface, less of it.
+  for (int v : free) moved[v] = 1;
   std::vector<Vec3> best;
   long least = -1;
   for (const double part : {1.0, 0.7, 0.4}) {
     std::vector<Vec3> to = mesh.vertices;
-    for (std::size_t i = 0; i < offsets.size(); ++i) to[membrane.free()[i]] += part * offsets[i];
+    for (std::size_t i = 0; i < offsets.size(); ++i) to[free[i]] += part * offsets[i];
     const long over = turned_over(mesh, to, moved);
     if (least < 0 || over < least) least = over, best = std::move(to);
     if (least == 0) break;
   }
   mesh.vertices = std::move(best);
-  report.moved = int(offsets.size());
-  report.angle_after = share(seam_angles(mesh, seam), 0.5);
+}
+
+}  // namespace
+
+SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
+                     double gap) {
+  SeamBlend report;
+  const std::vector<double> angles = seam_angles(mesh, seam);
+  report.angle_before = report.angle_after = share(angles, 0.5);
+  report.distance = distance > 0 ? distance : natural_distance(angles, mean_edge_beside(mesh, seam), gap);
+  if (!(report.distance > 0)) return report;
+  Neighbourhood near(mesh, seam, fixed, report.distance);
+  // A sharp crease is no small one: its normals are not known before it is flatter.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const Membrane membrane(near.mesh, near.seam, near.fixed, near.reach);
+    const std::vector<Vec3> offsets = membrane.solve();
+    if (offsets.empty()) break;
+    const std::vector<Vec3> before = near.mesh.vertices;
+    give_way(near.mesh, membrane.free(), offsets);
+    const double after = share(seam_angles(near.mesh, near.seam), 0.5);
+    if (round > 0 && after > report.angle_after) {
+      near.mesh.vertices = before;
+      break;
+    }
+    report.moved = int(offsets.size()), report.angle_after = after;
+  }
+  for (std::size_t i = 0; i < near.vertex.size(); ++i) mesh.vertices[near.vertex[i]] = near.mesh.vertices[i];
   return report;
 }
 

@@ -397,7 +397,10 @@ long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smo
   const std::vector<Vec3> before = j.mesh.vertices;
   part_places(j.mesh, j.seam, j.fixed);
   if (!thesis) even_seam(j.mesh, j.seam, j.fixed, 8);
-  if (smoothing.blend) j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+  if (smoothing.blend) {
+    j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+    flip_seam(j.mesh, j.seam, j.fixed);
+  }
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
               smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);

@@ -12,6 +12,8 @@
 namespace parts::seam {
 namespace {
 
+constexpr int kFlipRounds = 4;
+
 Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
 /// The faces around the vertices in and next to the seam, kept up to date while
@@ -228,10 +230,14 @@ void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, st
                const SeamTidying& shortest) {
   SeamZone zone(mesh, seam, fixed);
   zone.collapse_short(shortest);
-  zone.flip_badly_shaped(4);
+  zone.flip_badly_shaped(kFlipRounds);
   std::vector<int> old_vertex, old_face;
   mesh = mesh::take_faces(mesh, zone.alive(), &old_vertex, &old_face);
   compact(seam, old_vertex), compact(fixed, old_vertex), compact(tag, old_face);
+}
+
+void flip_seam(Mesh& mesh, std::vector<char>& seam, const std::vector<char>& fixed) {
+  SeamZone(mesh, seam, fixed).flip_badly_shaped(kFlipRounds);
 }
 
 void part_places(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed) {

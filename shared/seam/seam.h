@@ -46,6 +46,9 @@ struct SeamTidying {
 void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, std::vector<char>& tag,
                const SeamTidying& shortest);
 
+/// The last of that once more, after vertices moved.
+void flip_seam(Mesh& mesh, std::vector<char>& seam, const std::vector<char>& fixed);
+
 /// Moves vertices of the seam that lie at the very place of another one a little
 /// towards their own neighbours: surfaces that only touch there stay two when a
 /// reader makes vertices at one place one.

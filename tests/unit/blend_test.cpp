@@ -50,7 +50,7 @@ TEST(Blend, TheCreaseIsSpreadOverTheBand) {
     // Twenty edges share it.
     for (int k = 0; k < 12; ++k) EXPECT_LT(roof.angle(k * Roof::kEdge), 2.5 * degrees / 20) << degrees << ", " << k;
     for (std::size_t v = 0; v < before.size(); ++v)
-      EXPECT_TRUE(std::abs(before[v].x()) < 0.7 || before[v] == roof.mesh.vertices[v]);
+      EXPECT_TRUE(std::abs(before[v].x()) < 0.51 || before[v] == roof.mesh.vertices[v]);
   }
 }
 
