@@ -5,6 +5,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "parts/base/disjoint_sets.h"
+#include "parts/mesh/laplacian.h"
 
 namespace parts::mend {
 
@@ -21,28 +22,14 @@ struct SmoothField::Solver {
   explicit Solver(const Mesh& mesh) : points(mesh.vertices), area(Eigen::VectorXd::Zero(mesh.vertex_count())) {
     const int n = mesh.vertex_count();
     DisjointSets sets(n);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (const Triangle& f : mesh.faces) {
-      sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
-      const Vec3 normal = (points[f[1]] - points[f[0]]).cross(points[f[2]] - points[f[0]]);
-      for (int k = 0; k < 3; ++k) {
-        area[f[k]] += normal.norm() / 6;
-        // Needles would make the system worse than the surface is.
-        constexpr double kMost = 10;
-        const int i = f[(k + 1) % 3], j = f[(k + 2) % 3];
-        const double dot = (points[i] - points[f[k]]).dot(points[j] - points[f[k]]);
-        const double cot = std::clamp(0.5 * dot / std::max(normal.norm(), 1e-300), 0.01, kMost);
-        entries.emplace_back(i, j, -cot), entries.emplace_back(j, i, -cot);
-        entries.emplace_back(i, i, cot), entries.emplace_back(j, j, cot);
-      }
-    }
+    for (const Triangle& f : mesh.faces) sets.unite(f[0], f[1]), sets.unite(f[0], f[2]);
+    const mesh::Laplacian l = mesh::laplacian(points, mesh.faces);
+    area = l.area;
     for (int v = 0; v < n; ++v) component.push_back(sets.find(v));
     const double mean = area.mean();
     unit = std::sqrt(std::max(mean, 1e-300));
     area = (area / std::max(mean, 1e-300)).cwiseMax(0.05);
-    Matrix laplacian(n, n);
-    laplacian.setFromTriplets(entries.begin(), entries.end());
-    bilaplacian = laplacian.transpose() * area.cwiseInverse().asDiagonal() * laplacian;
+    bilaplacian = l.matrix.transpose() * area.cwiseInverse().asDiagonal() * l.matrix;
   }
 };
 
@@ -89,7 +76,8 @@ std::vector<Vec3> SmoothField::operator()(const std::vector<Vec3>& target, const
   }
   if (!s.analyzed) s.cholesky.analyzePattern(system), s.analyzed = true;
   s.cholesky.factorize(system);
-  const Eigen::MatrixX3d solved = s.cholesky.solve(right);
+  Eigen::MatrixX3d solved = Eigen::MatrixX3d::Constant(n, 3, std::nan(""));
+  if (s.cholesky.info() == Eigen::Success) solved = s.cholesky.solve(right);
   std::vector<Vec3> field(n);
   for (int v = 0; v < n; ++v) field[v] = solved.row(v).transpose();
   follow_nearest(s, known, weight, field);

@@ -24,6 +24,7 @@ class SmoothField {
   /// @param weight  a vertex, 0 = unknown. A component without any takes the
   ///                values of the nearest vertices that have one.
   /// @param length  world units: details of the targets smaller than this are smoothed away
+  /// @return a vector a vertex; not numbers if the surface is too degenerate to be solved on
   std::vector<Vec3> operator()(const std::vector<Vec3>& target, const std::vector<double>& weight, double length);
 
  private:

@@ -91,6 +91,7 @@ class Stitching {
 
   double run() {
     auto pairs = mesh::match_loops(j_.mesh, rings_a_, rings_b_, max_gap_, report_.seam_gap);
+    j_.gap = report_.seam_gap;
     agree_on_orientation(pairs);
     for (const auto& [i, k] : pairs) join(rings_a_[i], rings_b_[k]);
     keep_unpaired(pairs);
@@ -329,6 +330,12 @@ double Stitching::close_or_leave() {
   cap(j_.mesh, capped, j_.like);
   j_.tag.resize(j_.mesh.faces.size(), 2);
   const std::size_t vertices = j_.mesh.vertices.size();
+  // Borders that the models had and that were joined lie at the seam now.
+  const auto side_of = [&](int v) { return j_.tag[j_.like[v]] == 1 ? kBorderB : kBorderA; };
+  for (int f = 0; f < j_.mesh.face_count(); ++f)
+    if (j_.tag[f] == 2)
+      for (int v : j_.mesh.faces[f])
+        if (v < int(j_.seam.size()) && !j_.seam[v]) j_.seam[v] = side_of(v);
   j_.seam.resize(vertices, kNoSeam), j_.fixed.resize(vertices, 0), j_.closed.resize(vertices, 1);
   j_.like.resize(vertices, j_.mesh.face_count() - 1);
   return unmatched;
@@ -362,23 +369,11 @@ void Stitching::remove_flaps() {
 
 double stitch_parts(Joined& j, double max_gap, SeamReport& report) { return Stitching(j, max_gap, report).run(); }
 
-long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
-  if (cut == cut::Cut::Refined)
-    tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
-  else
-    tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.2 * voxel, 0.2 * voxel});
-  for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
-  const std::vector<Vec3> before = j.mesh.vertices;
-  if (cut == cut::Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
-  smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
-              smoothing.weight);
-  std::vector<char> movable(j.mesh.vertices.size(), 0);
-  for (std::size_t v = 0; v < movable.size(); ++v)
-    movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
-  constexpr int kRounds = 15;
-  const long crossings = untangle(j.mesh, movable, kRounds, threads);
-  if (j.mesh.vertex_normal.empty()) return crossings;
-  // Normals are the inputs' own but around the seam.
+namespace {
+
+/// Normals are the inputs' own but around what was made or moved.
+void mend_normals(Joined& j, const std::vector<Vec3>& before) {
+  if (j.mesh.vertex_normal.empty()) return;
   std::vector<Eigen::Vector3f> normals = j.mesh.vertex_normal;
   mesh::update_normals(j.mesh);
   std::vector<char> changed = j.seam;
@@ -390,6 +385,30 @@ long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smo
   }
   for (std::size_t v = 0; v < normals.size(); ++v)
     if (!changed[v]) j.mesh.vertex_normal[v] = normals[v];
+}
+
+}  // namespace
+
+long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
+  const bool thesis = cut == cut::Cut::Thesis;
+  tidy_seam(j.mesh, j.seam, j.fixed, j.tag,
+            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel});
+  for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
+  const std::vector<Vec3> before = j.mesh.vertices;
+  part_places(j.mesh, j.seam, j.fixed);
+  if (!thesis) even_seam(j.mesh, j.seam, j.fixed, 8);
+  if (smoothing.blend) {
+    j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+    flip_seam(j.mesh, j.seam, j.fixed);
+  }
+  smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
+              smoothing.weight);
+  std::vector<char> movable(j.mesh.vertices.size(), 0);
+  for (std::size_t v = 0; v < movable.size(); ++v)
+    movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
+  constexpr int kRounds = 15;
+  const long crossings = untangle(j.mesh, movable, kRounds, threads);
+  mend_normals(j, before);
   return crossings;
 }
 

@@ -4,6 +4,7 @@
 #include "parts/cut/cut.h"
 #include "parts/cut/volume.h"
 #include "parts/mesh/loops.h"
+#include "parts/seam/blend.h"
 #include "parts/seam/clip.h"
 #include "parts/seam/seam.h"
 
@@ -23,6 +24,8 @@ struct Joined {
   std::vector<mesh::Loop> own_a, own_b;  ///< borders that the models had; may be joined to what is cut of the other
   std::vector<std::array<int, 2>> own;   ///< half-edges of loops_a and loops_b that were the inputs' border, sorted
   bool may_turn_b = true;                ///< B may be turned over, if the seam says so
+  double gap = 0;                        ///< mean distance between the borders before stitching, world units
+  SeamBlend blend;                       ///< what finish_seam's blending did
 };
 
 /// Puts the clipped models side by side.
@@ -37,8 +40,9 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
 /// @return the length of borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 
-/// Removes the seam's slivers, evens it (Refined), smooths it, parts faces that
-/// cross, and mends the normals around it.
+/// Removes the seam's slivers, evens it (Refined), lets the surfaces give way at
+/// it (if asked to), smooths it, parts faces that cross, and mends the normals
+/// around it.
 /// @return pairs of faces at the seam that still cross
 long finish_seam(Joined& joined, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads);
 

@@ -46,6 +46,18 @@ class Side {
     return places;
   }
 
+  /// Places from one on, along half-edges or against them, as far as the cut made
+  /// them; none if it comes to a bridge before.
+  std::vector<int> run(int k, bool ahead) const {
+    std::vector<int> places{k};
+    while (ahead ? fresh_ahead(k) : fresh_behind(k)) {
+      k = ahead ? next(k) : before(k);
+      if (mate[k] >= 0) return {};
+      places.push_back(k);
+    }
+    return places;
+  }
+
   std::vector<int> mate;     ///< per place: the other side's, across a bridge; or -1
   std::vector<char> filled;  ///< per place: the half-edge that leaves has a face opposite
 
@@ -67,10 +79,12 @@ class PieceZipper {
 
   ZipperedPieces run() {
     bridge_nearest();
-    bridge_ends(a_, b_);
-    bridge_ends(b_, a_);
     for (int k = 0; k < a_.size(); ++k)
-      if (a_.mate[k] >= 0) zipper_from(k);
+      if (a_.mate[k] >= 0) zipper_piece(k);
+    for (int k = 0; k < a_.size(); ++k) {
+      if (a_.mate[k] >= 0 && !starts_[k]) zipper_to_ends(k, true);
+      if (a_.mate[k] >= 0 && !ends_[k]) zipper_to_ends(k, false);
+    }
     pieces_.open = mesh::trace_loops(left_open());
     return std::move(pieces_);
   }
@@ -79,8 +93,9 @@ class PieceZipper {
   const Vec3& at(const Side& side, int k) const { return mesh_.vertices[side.vertex(k)]; }
   std::vector<int> nearest(const Side& from, const Side& to) const;
   void bridge_nearest();
-  void bridge_ends(Side& ending, Side& starting);
-  void zipper_from(int bridge);
+  void zipper_runs(const std::vector<int>& of_a, const std::vector<int>& of_b);
+  void zipper_piece(int bridge);
+  void zipper_to_ends(int bridge, bool ahead);
   bool faces(const Side& side, const std::vector<int>& arc, const Side& other, const std::vector<int>& opposite) const;
   std::vector<std::array<int, 2>> left_open() const;
 
@@ -88,7 +103,8 @@ class PieceZipper {
   const std::vector<int>& like_;
   double max_gap_;
   Side a_, b_;
-  std::vector<char> starts_, ends_;  ///< per place of a: a strip starts, ends at its bridge
+  std::vector<char> starts_, ends_;            ///< per place of a: a strip starts, ends at its bridge
+  std::vector<std::array<int, 2>> ends_left_;  ///< half-edges across the ends of strips that end at no bridge
   ZipperedPieces pieces_;
 };
 
@@ -118,26 +134,6 @@ void PieceZipper::bridge_nearest() {
     if (to_b[k] >= 0 && to_a[to_b[k]] == k) a_.mate[k] = to_b[k], b_.mate[to_b[k]] = k;
 }
 
-/// Where on one side what the cut made comes to an end, and on the other it
-/// starts, both behind the same last bridge, the ends are bridged too.
-void PieceZipper::bridge_ends(Side& ending, Side& starting) {
-  for (int k = 0; k < ending.size(); ++k) {
-    if (ending.mate[k] >= 0 || !ending.fresh_behind(k) || ending.fresh_ahead(k)) continue;
-    int m = k;
-    do m = ending.fresh_behind(m) ? ending.before(m) : -1;
-    while (m >= 0 && ending.mate[m] < 0 && m != k);
-    if (m < 0 || ending.mate[m] < 0) continue;
-    const int across = ending.mate[m];
-    int l = across;
-    while (starting.fresh_behind(l) && (l == across || starting.mate[l] < 0)) {
-      l = starting.before(l);
-      if (l == across) break;
-    }
-    if (l == across || starting.mate[l] >= 0 || (at(ending, k) - at(starting, l)).norm() > max_gap_) continue;
-    ending.mate[k] = l, starting.mate[l] = k;
-  }
-}
-
 /// Whether the part of an arc that the input had lies along the opposite arc.
 bool PieceZipper::faces(const Side& side, const std::vector<int>& arc, const Side& other,
                         const std::vector<int>& opposite) const {
@@ -157,32 +153,56 @@ bool PieceZipper::faces(const Side& side, const std::vector<int>& arc, const Sid
   return true;
 }
 
-/// Zippers the piece between a bridge and a's next one, if b runs back from the
-/// other to the one without a bridge between.
-void PieceZipper::zipper_from(int k) {
-  const int next = a_.next_bridge(k);
-  if (next < 0 || b_.next_bridge(a_.mate[next]) != a_.mate[k]) return;
-  const std::vector<int> of_a = a_.arc(k, next), of_b = b_.arc(a_.mate[next], a_.mate[k]);
-  const auto any_fresh = [](const Side& side, const std::vector<int>& arc) {
-    return std::any_of(arc.begin(), arc.end() - 1, [&](int p) { return side.fresh_ahead(p); });
-  };
-  if (!any_fresh(a_, of_a) && !any_fresh(b_, of_b)) return;
-  if (!faces(a_, of_a, b_, of_b) || !faces(b_, of_b, a_, of_a)) return;
+/// Zippers between a run of a's places and one of b's, b's against its half-edges.
+void PieceZipper::zipper_runs(const std::vector<int>& of_a, const std::vector<int>& of_b) {
   std::vector<int> p, q;
   for (int place : of_a) p.push_back(a_.vertex(place));
   for (int place : of_b) q.push_back(b_.vertex(place));
   for (std::size_t i = 0; i + 1 < of_a.size(); ++i) a_.filled[of_a[i]] = 1;
-  for (std::size_t i = 0; i + 1 < of_b.size(); ++i) b_.filled[of_b[i]] = 1;
-  std::reverse(q.begin(), q.end());
+  for (std::size_t i = 1; i < of_b.size(); ++i) b_.filled[of_b[i]] = 1;
   zipper_lines(mesh_, p, q, like_);
   ++pieces_.strips, pieces_.length += mesh::loop_length(mesh_, {p, false});
+}
+
+/// Zippers the piece between a bridge and a's next one, if b runs back from the
+/// other to the one without a bridge between, and no more than one of the two
+/// was in part a border before.
+void PieceZipper::zipper_piece(int k) {
+  const int next = a_.next_bridge(k);
+  if (next < 0 || b_.next_bridge(a_.mate[next]) != a_.mate[k]) return;
+  const std::vector<int> of_a = a_.arc(k, next);
+  std::vector<int> of_b = b_.arc(a_.mate[next], a_.mate[k]);
+  const auto all_fresh = [](const Side& side, const std::vector<int>& arc) {
+    return std::all_of(arc.begin(), arc.end() - 1, [&](int p) { return side.fresh_ahead(p); });
+  };
+  const bool fresh_a = all_fresh(a_, of_a), fresh_b = all_fresh(b_, of_b);
+  if ((!fresh_a && !fresh_b) || (!fresh_a && !faces(a_, of_a, b_, of_b)) || (!fresh_b && !faces(b_, of_b, a_, of_a)))
+    return;
+  std::reverse(of_b.begin(), of_b.end());
+  zipper_runs(of_a, of_b);
   starts_[k] = 1, ends_[next] = 1;
+}
+
+/// Zippers from a bridge on to where on both sides what the cut made comes to
+/// its end: there the inputs' borders go on, or a chain ends.
+/// @param ahead  in a's direction, or against it
+void PieceZipper::zipper_to_ends(int k, bool ahead) {
+  std::vector<int> of_a = a_.run(k, ahead), of_b = b_.run(a_.mate[k], !ahead);
+  if (of_a.empty() || of_b.empty() || of_a.size() + of_b.size() < 3) return;
+  const int end_a = of_a.back(), end_b = of_b.back();
+  if ((at(a_, end_a) - at(b_, end_b)).norm() > max_gap_) return;
+  if (!ahead) std::reverse(of_a.begin(), of_a.end()), std::reverse(of_b.begin(), of_b.end());
+  zipper_runs(of_a, of_b);
+  (ahead ? starts_ : ends_)[k] = 1;
+  std::array<int, 2> end{b_.vertex(end_b), a_.vertex(end_a)};
+  if (!ahead) std::swap(end[0], end[1]);
+  ends_left_.push_back(end);
 }
 
 /// The half-edges that faces have no opposite for: of the contours, and of
 /// bridges that end a strip.
 std::vector<std::array<int, 2>> PieceZipper::left_open() const {
-  std::vector<std::array<int, 2>> open;
+  std::vector<std::array<int, 2>> open = ends_left_;
   for (const Side* side : {&a_, &b_})
     for (int k = 0; k < side->size(); ++k)
       if (!side->filled[k] && side->next(k) >= 0) open.push_back({side->vertex(k), side->vertex(side->next(k))});

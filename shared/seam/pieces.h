@@ -20,10 +20,10 @@ struct ZipperedPieces {
 
 /// Zippers contours piece by piece where they do not pair off one to one (two
 /// of a facing one of b, a chain facing a part of a loop): bridges between
-/// mutually nearest vertices and between ends of chains, no longer than
-/// max_gap, part them into pieces, and facing pieces are zippered. The inputs'
-/// own borders are joined to what the cut made of the other, where that is no
-/// farther than max_gap, never to each other.
+/// mutually nearest vertices, no longer than max_gap, part them into pieces, and
+/// facing pieces are zippered, up to where chains end. The inputs' own borders
+/// are joined to what the cut made of the other, where that is no farther than
+/// max_gap, never to each other: a hole that both had stays.
 /// @param like  per vertex: the face that a new face at it is dressed as
 ZipperedPieces zipper_pieces(Mesh& mesh, const std::vector<Contour>& a, const std::vector<Contour>& b, double max_gap,
                              const std::vector<int>& like);

@@ -6,9 +6,13 @@
 #include <unordered_map>
 
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/prepare.h"
+#include "parts/seam/band.h"
 
 namespace parts::seam {
 namespace {
+
+constexpr int kFlipRounds = 4;
 
 Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
@@ -137,8 +141,9 @@ void SeamZone::collapse_short(const SeamTidying& shortest) {
     int gone = e[0], stays = e[1];
     if (!star_.count(gone) || !star_.count(stays) || shared_faces(gone, stays).empty()) continue;
     // What the inputs had stays in place; of two new vertices both give way.
-    if (fixed_[gone] || (!seam_[gone] && seam_[stays])) std::swap(gone, stays);
-    if (fixed_[gone] || !seam_[gone]) continue;
+    if (fixed_[gone] || (!seam_[gone] && seam_[stays] && !fixed_[stays])) std::swap(gone, stays);
+    const bool at_one_place = mesh_.vertices[gone] == mesh_.vertices[stays];
+    if (!at_one_place && (fixed_[gone] || !seam_[gone])) continue;
     const bool both = seam_[stays] && !fixed_[stays];
     const Vec3 middle = 0.5 * (mesh_.vertices[gone] + mesh_.vertices[stays]);
     if (!try_collapse(gone, stays, both ? middle : mesh_.vertices[stays])) continue;
@@ -225,10 +230,34 @@ void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, st
                const SeamTidying& shortest) {
   SeamZone zone(mesh, seam, fixed);
   zone.collapse_short(shortest);
-  zone.flip_badly_shaped(4);
+  zone.flip_badly_shaped(kFlipRounds);
   std::vector<int> old_vertex, old_face;
   mesh = mesh::take_faces(mesh, zone.alive(), &old_vertex, &old_face);
   compact(seam, old_vertex), compact(fixed, old_vertex), compact(tag, old_face);
+}
+
+void flip_seam(Mesh& mesh, std::vector<char>& seam, const std::vector<char>& fixed) {
+  SeamZone(mesh, seam, fixed).flip_badly_shaped(kFlipRounds);
+}
+
+void part_places(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed) {
+  constexpr double kStep = 0.1;  // of the way to its neighbours' mean
+  const std::vector<int> first = mesh::first_at_same_place(mesh);
+  std::vector<char> moves(mesh.vertices.size(), 0);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (first[v] == v) continue;
+    // Of those at one place the one that comes first stays, or else the one that must.
+    const int u = seam[v] && !fixed[v] ? v : first[v];
+    moves[u] = seam[u] && !fixed[u];
+  }
+  std::vector<Vec3> sum(mesh.vertices.size(), Vec3::Zero());
+  std::vector<int> count(mesh.vertices.size(), 0);
+  for (const Triangle& f : mesh.faces)
+    for (int v : f)
+      if (moves[v])
+        for (int u : f) sum[v] += mesh.vertices[u], ++count[v];
+  for (std::size_t v = 0; v < moves.size(); ++v)
+    if (moves[v] && count[v]) mesh.vertices[v] += kStep * (sum[v] / count[v] - mesh.vertices[v]);
 }
 
 void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, int iterations) {
@@ -261,40 +290,10 @@ void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char
 void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
                  int iterations, double weight) {
   if (iterations <= 0 || weight <= 0) return;
-  // Distances along edges from the seam, by Dijkstra, up to `distance`.
-  std::vector<std::vector<int>> around(mesh.vertices.size());
-  std::vector<char> close(mesh.vertices.size(), 0);
-  Box reach;
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (seam[v]) reach.extend(mesh.vertices[v]);
-  if (reach.isEmpty()) return;
-  for (int v = 0; v < mesh.vertex_count(); ++v) close[v] = reach.exteriorDistance(mesh.vertices[v]) <= distance;
-  std::unordered_map<long long, int> sides;  // of edges, to find the boundary
-  for (const Triangle& f : mesh.faces)
-    for (int k = 0; k < 3; ++k) {
-      const int u = f[k], v = f[(k + 1) % 3];
-      if (!close[u] && !close[v]) continue;
-      if (++sides[(long long)(std::min(u, v)) << 32 | std::max(u, v)] == 1)
-        around[u].push_back(v), around[v].push_back(u);
-    }
-  std::vector<char> still = fixed;
-  for (const auto& [edge, count] : sides)
-    if (count != 2) still[edge >> 32] = still[int(edge & 0xffffffff)] = 1;
-  std::vector<double> away(mesh.vertices.size(), 1e300);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (seam[v]) queue.push({away[v] = 0, v});
+  const Band band = band_around(mesh, seam, distance);
   std::vector<int> moving;
-  while (!queue.empty()) {
-    const auto [d, v] = queue.top();
-    queue.pop();
-    if (d > away[v]) continue;
-    if (!still[v]) moving.push_back(v);
-    for (int u : around[v])
-      if (const double e = d + (mesh.vertices[u] - mesh.vertices[v]).norm(); e < away[u] && e < distance)
-        queue.push({away[u] = e, u});
-  }
+  for (int v : band.vertices)
+    if (!fixed[v] && !band.on_border[v]) moving.push_back(v);
   std::vector<Vec3> next(moving.size());
   for (int round = 0; round < iterations; ++round) {
     for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -302,12 +301,12 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
       // Near neighbours count more, so that uneven triangles do not drag.
       Vec3 mean = Vec3::Zero();
       double weights = 0;
-      for (int u : around[v]) {
+      for (int u : band.around[v]) {
         const double n = 1 / std::max((mesh.vertices[u] - mesh.vertices[v]).norm(), 1e-300);
         mean += n * mesh.vertices[u], weights += n;
       }
       mean /= weights;
-      const double w = weight * (distance > 0 ? 1 - away[v] / distance : 1);
+      const double w = weight * (distance > 0 ? 1 - band.away[v] / distance : 1);
       next[i] = mesh.vertices[v] + w * (mean - mesh.vertices[v]);
     }
     for (std::size_t i = 0; i < moving.size(); ++i) mesh.vertices[moving[i]] = next[i];

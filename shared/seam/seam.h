@@ -11,8 +11,10 @@ namespace parts::seam {
 /// averaged with their neighbours'.
 struct SeamSmoothing {
   int iterations = 3;
-  double distance = 0;  ///< world units from the seam up to which vertices move; 0 = two voxels
-  double weight = 0.5;  ///< 0..1, how far a vertex goes to its neighbours' mean
+  double distance = 0;        ///< world units from the seam up to which vertices move; 0 = two voxels
+  double weight = 0.5;        ///< 0..1, how far a vertex goes to its neighbours' mean
+  bool blend = false;         ///< the surfaces give way at the seam first (blend_seam)
+  double blend_distance = 0;  ///< world units from the seam up to which they do; 0 = chosen from gap and angle
 };
 
 /// What stitching measured.
@@ -43,6 +45,14 @@ struct SeamTidying {
 /// @param tag   per face, follows the faces
 void tidy_seam(Mesh& mesh, std::vector<char>& seam, std::vector<char>& fixed, std::vector<char>& tag,
                const SeamTidying& shortest);
+
+/// The last of that once more, after vertices moved.
+void flip_seam(Mesh& mesh, std::vector<char>& seam, const std::vector<char>& fixed);
+
+/// Moves vertices of the seam that lie at the very place of another one a little
+/// towards their own neighbours: surfaces that only touch there stay two when a
+/// reader makes vertices at one place one.
+void part_places(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed);
 
 /// Evens the curve in which the two borders became one: its vertices go to and
 /// fro between their neighbours on it (Taubin 1995), which shortens nothing.

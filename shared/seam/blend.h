@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parts/mesh/mesh.h"
+
+namespace parts::seam {
+
+/// What blending a seam did.
+struct SeamBlend {
+  double distance = 0;      ///< world units, as asked for or as chosen
+  int moved = 0;            ///< vertices
+  double angle_before = 0;  ///< degrees between faces at the seam's edges, in the median
+  double angle_after = 0;
+};
+
+/// Lets both sides of a seam give way, so that positions and normals agree
+/// where they meet and their details stay: to the vertices an offset is added
+/// that is a biharmonic membrane on both sides of the seam, nothing at the
+/// distance and smooth there (GeoBrush, Takayama et al. 2011, for the idea). Of
+/// all offsets it is the one that bends the surface least and takes the crease out
+/// of the seam; what the crease was is spread over the band as curvature.
+/// Beyond the distance, along the surface, vertices stay as they are, bit for
+/// bit, and so do fixed ones.
+/// @param seam      per vertex: not 0 on the seam
+/// @param fixed     per vertex: 1 stays where it is
+/// @param distance  world units; 0 = chosen from the angle across the seam and
+///                  the step that it was: up to twelve edges
+SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
+                     double gap);
+
+}  // namespace parts::seam
