@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "parts/mend/inner_wall.h"
 #include "parts/mend/small_holes.h"
 
 namespace parts::mend {
@@ -32,7 +33,10 @@ class Mending {
   void close_small_holes();
   bool find_again(Region& region) const;
   void mend(std::size_t i, Progress part);
-  void mend_from_models(std::size_t i, const Region& region, Progress part);
+  Restored from_models(std::size_t i, const Region& region, Progress part);
+  Restored found_and_pasted(std::size_t i, const Scan& scan, const Region& region, Progress part);
+  void accept(std::size_t i, Restored restored);
+  bool changed_since(std::size_t i, std::size_t from) const;
   bool worth_another_try(std::size_t i) const;
 
   const io::ModelDatabase& database_;
@@ -45,6 +49,7 @@ class Mending {
   const Scan first_;
   Scan scan_;  ///< now
   std::vector<Region> regions_;
+  std::vector<char> through_wall_;    ///< per region: one of the two holes through a wall
   std::vector<Objection> objection_;  ///< to each region's best model
   std::vector<Box> changed_;          ///< where patches were made, in their order
   std::vector<std::size_t> tried_;    ///< per region: how many of these there were when it was tried
@@ -68,6 +73,7 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
     search_options_.candidates = std::max(search_options_.candidates, options.restore.fitting.blend);
   out_.chains = first_.chains();
   for (const Region& region : regions_) {
+    through_wall_.push_back(is_through_a_wall(first_, region));
     RegionReport report;
     report.edges = region.rims.empty() ? 0 : region.rims[0].size();
     report.center = region.box.center();
@@ -103,8 +109,7 @@ void Mending::mend(std::size_t i, Progress part) {
   }
   tried_[i] = changed_.size();
   try {
-    mend_from_models(i, region, part);
-    report.left_because.clear();
+    accept(i, from_models(i, region, part));
   } catch (const NotMended& e) {
     report.left_because = e.what(), objection_[i] = e.objection;
   } catch (const UserError& e) {
@@ -112,19 +117,47 @@ void Mending::mend(std::size_t i, Progress part) {
   }
 }
 
-void Mending::mend_from_models(std::size_t i, const Region& region, Progress part) {
+/// A hole through a wall whose outer side has been mended is mended from within.
+Restored Mending::from_models(std::size_t i, const Region& region, Progress part) {
+  if (through_wall_[i] && changed_since(i, 0)) {
+    try {
+      if (const std::optional<InnerWall> wall = inner_wall(scan_, region)) {
+        Restored r = put_back(scan_, *wall, found_and_pasted(i, wall->scan, wall->region, part.part(0, 50)));
+        const Trial whole{
+            scan_.mesh(), region.rims, r.mesh, r.source, r.candidate, 1e300, restore_options_.fitting.threads};
+        if (objection_to(whole) == Objection::None) return r;
+      }
+    } catch (const UserError&) {  // then as any other
+    }
+    part = part.part(50, 100);
+  }
+  return found_and_pasted(i, scan_, region, part);
+}
+
+/// Whether a patch has been made in the region, of those from number `from` on.
+bool Mending::changed_since(std::size_t i, std::size_t from) const {
+  return std::any_of(changed_.begin() + long(from), changed_.end(),
+                     [&](const Box& b) { return b.intersects(regions_[i].box); });
+}
+
+Restored Mending::found_and_pasted(std::size_t i, const Scan& scan, const Region& region, Progress part) {
   RegionReport& report = out_.regions[i];
   Progress searching = part.part(0, 50), mending = part.part(50, 100);
   const std::vector<search::Candidate> found =
-      search_around(scan_, region, database_, search_options_, memory_, searching);
+      search_around(scan, region, database_, search_options_, memory_, searching);
   report.candidates.clear();
   std::vector<PlacedModel> models;
   for (const search::Candidate& c : found) {
     report.candidates.push_back({database_.name(c.model), c.score});
     models.push_back({placed(database_.load(c.model), c.placement), database_.name(c.model)});
   }
-  Restored r = mend_region(scan_, region, models, restore_options_, mending);
-  report.end = End::Mended, report.restored = r.report;
+  return mend_region(scan, region, models, restore_options_, mending);
+}
+
+/// The scan from now on.
+void Mending::accept(std::size_t i, Restored r) {
+  RegionReport& report = out_.regions[i];
+  report.end = End::Mended, report.restored = r.report, report.left_because.clear();
   const Ranked& used = report.candidates[r.report.model];
   out_.candidates.push_back({int(i), std::move(r.candidate), used.name, used.score});
   changed_.emplace_back();
@@ -140,9 +173,7 @@ void Mending::mend_from_models(std::size_t i, const Region& region, Progress par
 /// What no model has a surface for, as a neck, is not asked for again; else
 /// where a patch has been made beside it since.
 bool Mending::worth_another_try(std::size_t i) const {
-  return out_.regions[i].end == End::Left && objection_[i] != Objection::NoSurface &&
-         std::any_of(changed_.begin() + long(tried_[i]), changed_.end(),
-                     [&](const Box& b) { return b.intersects(regions_[i].box); });
+  return out_.regions[i].end == End::Left && objection_[i] != Objection::NoSurface && changed_since(i, tried_[i]);
 }
 
 Mended Mending::run() {

@@ -274,16 +274,19 @@ void Searcher::search_everywhere(int from, int to) {
   std::map<int, std::vector<Entry*>> by_scale;
   for (Entry& e : entries_)
     for (int s : e.scales) by_scale[s].push_back(&e);
-  int done = 0;
+  int halves = 0;  // of the scales' work: the query's spectra, then the models'
+  const auto next_half = [&] {
+    const int all = 2 * int(by_scale.size()), first = halves++;
+    progress_.stage("Comparing everywhere", from + (to - from) * first / all, from + (to - from) * halves / all);
+  };
   for (const auto& [scale, entries] : by_scale) {
-    const int all = int(by_scale.size());
-    progress_.stage("Comparing everywhere", from + (to - from) * done / all, from + (to - from) * (done + 1) / all);
-    ++done;
+    next_half();
     const double to_voxels = std::pow(kScaleStep, scale);
     std::vector<Correlation::Query> queries(turns.size() / 2);
     run_tasks(int(queries.size()), threads_, progress_, [&](int i, const auto&) {
       queries[i] = Correlation::query(points, plan_->size, to_voxels * turns[2 * i], to_voxels * turns[2 * i + 1]);
     });
+    next_half();
     run_tasks(int(entries.size()), threads_, progress_,
               [&, scale = scale, &entries = entries](int i, const auto& poll) {
                 for (std::size_t q = 0; q < queries.size(); ++q) {
