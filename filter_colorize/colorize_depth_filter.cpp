@@ -9,6 +9,7 @@
 #include "parts/examples/examples.h"
 #include "parts/host/common.h"
 #include "parts/io/raster_io.h"
+#include "parts/render/background.h"
 #include "parts/render/depth_mesh.h"
 #include "parts/render/texture.h"
 #include "parts/synthesis/usage_picture.h"
@@ -30,6 +31,10 @@ std::vector<Parameter> parameters(const Scene&) {
                 "Objects of the same class with colours: a mapping database, or a database of textured or "
                 "vertex-coloured models, which are rendered from the front without shading."),
   };
+  list.push_back(text("Background", "auto", "Background",
+                      "A depth that stands for \"nothing there\", besides 0, infinity and NaN. auto: the largest one, "
+                      "where many pixels have that very number, up to the image's border, far behind the rest. none: "
+                      "there is none."));
   add_synthesis(list);
   list.push_back(save_file("ImageFile", "png", "Image",
                            "Where the image-map is written, transparent in the background. Empty: not at all."));
@@ -62,8 +67,14 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     throw UserError("Nothing is asked for; name an ImageFile or a UsageFile, or switch AddMesh on.");
   for (const std::string& file : {image_file, usage_file}) io::OutputFiles::check_image(file);
 
+  const render::BackgroundRule rule = render::parse_background(inputs.text("Background"));
   progress.stage("Reading", 0, 5);
-  const cv::Mat depth = io::read_depth(depth_file);
+  cv::Mat depth = io::read_depth(depth_file), no_back;
+  const render::RemovedBackground background = render::remove_background(rule, 1, depth, no_back);
+  if (background.pixels > 0) {
+    log_value(progress, "background", background.value);
+    log_value(progress, "background_pixels", double(background.pixels));
+  }
   Progress opening = progress.part(5, 20), coloring = progress.part(20, 90), meshing = progress.part(90, 98);
   const auto source = examples::open_examples(database, {render::View{}}, rendering(depth.size()), opening);
   std::vector<std::string> kept = source->files();

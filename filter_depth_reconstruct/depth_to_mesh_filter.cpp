@@ -6,8 +6,10 @@
 #include "filters.h"
 #include "parts/base/error.h"
 #include "parts/io/raster_io.h"
+#include "parts/render/background.h"
 #include "parts/render/depth_mesh.h"
 #include "parts/render/texture.h"
+#include "parts/render/view_image.h"
 
 namespace parts {
 namespace {
@@ -36,7 +38,13 @@ std::vector<Parameter> parameters(const Scene&) {
              "image."),
       length("MaxJump", 0, "Tear at jumps over",
              "Neighbouring pixels whose depths differ by more are not connected (with a back depth: that have more "
-             "empty space than this between them). 0: 5 % of the depth range, but at least six pixels' width."),
+             "empty space than this between them). 0: four times the step that three quarters of all neighbours stay "
+             "below, but at least six pixels' width."),
+      text(
+          "Background", "auto", "Background",
+          "A depth that stands for \"nothing there\", in the raster's own unit, besides 0, infinity and NaN. auto: the "
+          "largest one, where many pixels have that very number, up to the image's border, far behind the rest, as "
+          "renderers and sensors write it. none: there is none."),
       save_file("TextureFile", "png", "Texture file",
                 "Where the texture is written. Empty: the image itself is the texture where MeshLab can show it as it "
                 "is, or else a new file beside the depth raster. Inputs are never replaced."),
@@ -45,8 +53,9 @@ std::vector<Parameter> parameters(const Scene&) {
 
 struct Input {
   cv::Mat depth, back;
+  render::RemovedBackground background;
   std::string image_file;
-  io::Image image;
+  render::ViewImage view;
 };
 
 Input read(const Inputs& inputs, Progress& progress) {
@@ -54,20 +63,16 @@ Input read(const Inputs& inputs, Progress& progress) {
   const double scale = inputs.number("DepthScale");
   if (depth.empty()) throw UserError("No depth raster is named; choose a float TIFF, a PFM or a 16-bit PNG.");
   if (scale == 0) throw UserError("DepthScale is 0, which makes all depths 0; give another value.");
+  const render::BackgroundRule background = render::parse_background(inputs.text("Background"));
   progress.stage("Reading", 0, 20);
   Input in;
   in.depth = io::read_depth(depth, scale);
   if (!back.empty()) in.back = io::read_depth(back, scale);
+  in.background = render::remove_background(background, scale, in.depth, in.back);
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;
   progress.at(0.5);
-  in.image = io::read_image(in.image_file);
-  const cv::Size d = in.depth.size(), i = in.image.color.size();
-  const double skew = std::abs(double(i.width) * d.height - double(i.height) * d.width);
-  if (skew > std::max({i.width, i.height, d.width, d.height}))
-    throw UserError("The image has " + std::to_string(i.width) + " x " + std::to_string(i.height) +
-                    " pixels and the depth raster " + std::to_string(d.width) + " x " + std::to_string(d.height) +
-                    "; give an image of the same view, with the same proportions.");
+  in.view = render::read_view_image(in.image_file, in.depth.size());
   return in;
 }
 
@@ -76,9 +81,30 @@ std::string texture_of(const Input& in, const Inputs& inputs) {
   render::TextureTarget target{inputs.text("TextureFile"),
                                inputs.text("Depth"),
                                {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
-  if (target.file.empty() && render::shows_as_texture(in.image_file, in.image))
+  if (target.file.empty() && render::shows_as_texture(in.image_file, in.view.image))
     return std::filesystem::absolute(in.image_file).lexically_normal().string();
-  return render::write_texture(in.image.color, in.image.mask, target);
+  return render::write_texture(in.view.image.color, in.view.image.mask, target);
+}
+
+/// What was assumed of the rasters.
+void log_input(const Input& in, Progress& progress) {
+  if (in.background.pixels > 0) {
+    log_value(progress, "background", in.background.value);
+    log_value(progress, "background_pixels", double(in.background.pixels));
+  }
+  using Held = render::ViewImage::Held;
+  if (in.view.held != Held::NotSaid)
+    log_value(
+        progress, "image_orientation",
+        in.view.held == Held::AsStored
+            ? "The image's orientation tag is not heeded: it lies on the depth as it is stored, in the same rows."
+            : "The image is turned as its orientation tag says; as it is stored it has other proportions than the "
+              "depth.");
+  constexpr double kWorthSaying = 1e-3;
+  if (in.view.off > kWorthSaying)
+    log_value(progress, "image_proportions",
+              "They differ from the depth's by " + std::to_string(100 * in.view.off).substr(0, 4) +
+                  " %; the image is scaled by its width, middle on middle.");
 }
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
@@ -95,14 +121,17 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   if (in.image_file.empty()) {
     result.mesh.wedges.clear();
   } else {
-    const double finer = double(in.image.color.cols) / in.depth.cols;
-    seen = render::raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
+    const cv::Size size = in.view.image.color.size();
+    const double finer = double(size.width) / in.depth.cols;
+    seen = render::raster_camera(size, pixel_size / finer, focal * finer);
+    render::fit_texture(result.mesh, in.depth.size(), size);
     result.mesh.textures = {texture_of(in, inputs)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();
     outcome.rasters.push_back(
         {std::filesystem::path(in.image_file).filename().string(), result.mesh.textures[0], seen, distance});
   }
+  log_input(in, progress);
   log_value(progress, "width", in.depth.cols);
   log_value(progress, "height", in.depth.rows);
   log_value(progress, "max_jump", result.max_jump);

@@ -201,13 +201,22 @@ void log_result(const depth::DepthResult& r, Progress& progress) {
   log_value(progress, "examples_used", examples.str());
   log_value(progress, "foreground_pixels", cv::countNonZero(r.mask));
   log_value(progress, "mean_patch_distance", cv::mean(r.distance, r.mask)[0]);
-  log_value(progress, "strangeness", r.strangeness);
+  log_value(progress, "strangeness", r.evidence.strangeness);
   log_value(progress, "trusted", r.trusted ? "yes" : "no");
-  if (!r.trusted)
-    log_value(
-        progress, "warning",
-        "The image is unlike the examples: its patches are " + std::to_string(r.strangeness).substr(0, 4) +
-            " times as far from them as those of the strangest member of the class; the result is not to be trusted.");
+  log_value(progress, "silhouette_overlap", r.evidence.silhouette);
+  log_value(progress, "halves_difference", r.evidence.halves);
+  log_value(progress, "view_margin", r.evidence.view_margin);
+}
+
+/// Why a result is not to be trusted, and what all the figures are.
+std::string doubt(const depth::Evidence& e) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "The result is not to be trusted: the image may be of another class, or of a pose or light that no example "
+          "has (patches "
+       << e.strangeness << " times as far as those of the strangest member, silhouettes alike to " << 100 * e.silhouette
+       << " %, two halves of the database apart by " << 100 * e.halves << " % of the depth).";
+  return text.str();
 }
 
 /// @return the texture's file
@@ -258,8 +267,10 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "vertices", result.mesh.vertex_count());
   log_value(progress, "faces", result.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (!r.trusted) log_value(progress, "warning", doubt(r.evidence));
   Outcome outcome;
-  outcome.layers.push_back({"Reconstructed", std::move(result.mesh), true, r.camera});
+  outcome.layers.push_back(
+      {r.trusted ? "Reconstructed" : "Reconstructed (not trusted)", std::move(result.mesh), true, r.camera});
   outcome.current = 0;
   return outcome;
 }

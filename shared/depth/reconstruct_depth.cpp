@@ -245,8 +245,8 @@ DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& 
   DepthResult result;
   result.scale = placed.placement.scale, result.rotation = placed.placement.rotation;
   result.light = gallery.light();
-  result.strangeness = strangeness(placed.small, set, options);
-  result.trusted = result.strangeness < untrusted;
+  result.evidence = gather_evidence(placed.small, set, options);
+  result.trusted = is_trusted(result.evidence);
   result.plausibility = fronts.objective;
   const ToWorld to_world = count_examples(set, fronts, from.found, result);
   bring_back(query, placed, to_world, fronts, back, result);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "parts/base/progress.h"
+#include "parts/depth/evidence.h"
 #include "parts/depth/options.h"
 #include "parts/depth/query.h"
 #include "parts/examples/example.h"
@@ -33,8 +34,8 @@ struct DepthResult {
   cv::Mat example;                       ///< 32S, the query's size: index into used; -1 = background
   cv::Mat distance;                      ///< 32F, the query's size: of each patch, in standard deviations
   std::vector<std::vector<double>> plausibility;  ///< a level, coarse to fine, and iteration: mean log of eq. 3
-  double strangeness = 1;  ///< mean patch distance over that of the strangest of a few members of the class
-  bool trusted = true;     ///< false: the query is unlike the class
+  Evidence evidence;                              ///< for and against the result
+  bool trusted = true;                            ///< as is_trusted says
 };
 
 /// The depth of one image by example (thesis 4.1): every patch of image and

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parts/depth/evidence.h"
 #include "parts/depth/example_set.h"
 
 namespace parts::depth {
 
-/// Above this, a query is too unlike the class.
-constexpr double untrusted = 1.5;
+/// @param small  the query: at the scale of Gallery::small
+Evidence gather_evidence(const synthesis::PatchImage& small, const ExampleSet& set, const DepthOptions& options);
 
-/// How far the query's patches are from the examples', as a multiple of how far
-/// those of the strangest of a few members of the class are from the others'. On a
-/// small scale, before and apart from the reconstruction.
-double strangeness(const synthesis::PatchImage& small, const ExampleSet& set, const DepthOptions& options);
+/// Whether a reconstruction is to be trusted: bounds calibrated by bench_trust.
+bool is_trusted(const Evidence& evidence);
 
 }  // namespace parts::depth

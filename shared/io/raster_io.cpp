@@ -50,8 +50,8 @@ void check_size(const std::string& path) {
                     gigabytes(free) + " are free; make it smaller.");
 }
 
-/// The file as its format has it, turned upright.
-cv::Mat read_any(const std::string& path) {
+/// The file as its format has it.
+cv::Mat read_any(const std::string& path, bool upright = true) {
   std::error_code error;
   if (!fs::exists(path, error)) throw UserError(named(path) + "does not exist; check its name and folder.");
   if (!fs::is_regular_file(path, error))
@@ -63,7 +63,8 @@ cv::Mat read_any(const std::string& path) {
     // Only photographs say how the camera was held, and only without IMREAD_UNCHANGED is that heeded.
     const std::string e = extension(path);
     const bool photograph = e == ".jpg" || e == ".jpeg";
-    image = cv::imread(path, photograph ? cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH : cv::IMREAD_UNCHANGED);
+    const int heed = upright ? 0 : cv::IMREAD_IGNORE_ORIENTATION;
+    image = cv::imread(path, photograph ? cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | heed : cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& e) {
     if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
   }
@@ -148,8 +149,8 @@ void check_folder(const std::string& path) {
 
 }  // namespace
 
-Image read_image(const std::string& path) {
-  const cv::Mat bytes = to_bytes(read_any(path), path);
+Image read_image(const std::string& path, bool upright) {
+  const cv::Mat bytes = to_bytes(read_any(path, upright), path);
   std::vector<cv::Mat> planes;
   cv::split(bytes, planes);
   Image image;

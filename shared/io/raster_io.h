@@ -15,10 +15,11 @@ struct Image {
 };
 
 /// Reads an image of 8 or 16 bits (or float from 0 to 1) a channel: grey, grey
-/// with alpha, RGB or RGBA; turned upright where the file says how it was held.
+/// with alpha, RGB or RGBA.
+/// @param upright  turned as the file says that it was held; false: as it is stored
 /// @throws UserError  the file is missing, unreadable, empty, larger than the
 ///                    memory, or its alpha hides all of it
-Image read_image(const std::string& path);
+Image read_image(const std::string& path, bool upright = true);
 
 /// Reads a mask: an image whose bright half (or whose alpha, where it has one)
 /// is the foreground. @return 8U, 0 or 255

@@ -9,13 +9,12 @@
 #include "parts/base/memory.h"
 #include "parts/mesh/attributes.h"
 #include "parts/render/check_memory.h"
+#include "parts/render/depth_jump.h"
 #include "parts/render/pixel_faces.h"
 
 namespace parts::render {
 namespace {
 
-constexpr double kJumpShare = 0.05;      // of the depth range, at which a surface is torn
-constexpr double kJumpPixels = 6;        // steeper than about 80 degrees
 constexpr double kLeastThickness = 0.5;  // pixels, of a solid
 constexpr int kWallSteps = 64;           // most triangles across a wall
 constexpr double kBytesPerPixel = 350;   // measured: mesh and layer of a textured sheet
@@ -63,20 +62,6 @@ class Solid {
   int width_;
   bool closed_;
 };
-
-/// The jump at which a surface is torn when nobody says, from the middle 98 % of the depths.
-double automatic_jump(const Solid& solid, int pixels) {
-  std::vector<float> depths;
-  for (int p = 0; p < pixels; ++p)
-    if (solid.has(p)) depths.push_back(float(solid.front(p)));
-  const auto quantile = [&](double share) {
-    const auto at = depths.begin() + long(share * double(depths.size() - 1));
-    std::nth_element(depths.begin(), at, depths.end());
-    return double(*at);
-  };
-  const double low = quantile(0.01), high = quantile(0.99);
-  return std::max(kJumpShare * (high - low), kJumpPixels * solid.pixel_width((low + high) / 2));
-}
 
 void check_input(const cv::Mat& depth, const cv::Mat& back, const Camera& camera) {
   const auto pixels = [](const cv::Mat& m) { return std::to_string(m.cols) + " x " + std::to_string(m.rows); };
@@ -242,8 +227,7 @@ DepthMesh depth_to_mesh(const cv::Mat& depth, const cv::Mat& back, const Camera&
   out.back_before = solid.settle_back();
   const int pixels = depth.rows * depth.cols;
   progress.stage("Finding depth jumps", 0, 40);
-  if (cv::countNonZero(depth == depth) > 0)
-    out.max_jump = options.max_jump > 0 ? options.max_jump : automatic_jump(solid, pixels);
+  out.max_jump = options.max_jump > 0 ? options.max_jump : automatic_jump(depth, camera);
 
   std::vector<char> at_tear(std::size_t(pixels), 0);
   int row = 0;

@@ -11,7 +11,7 @@ namespace parts::render {
 
 struct DepthMeshOptions {
   /// Depth between neighbouring pixels at which the surface is torn, world
-  /// units. 0 = 5 % of the depth range, at least six pixels' width.
+  /// units. 0 = automatic_jump.
   double max_jump = 0;
 };
 

@@ -310,11 +310,11 @@ SynthesisResult synthesize(const PatchImage& query, const std::vector<PatchImage
                            const SynthesisOptions& options, const ExampleUpdate& update, Progress& progress,
                            const Agreement& agree) {
   if (examples.empty()) throw UserError("There is no example; give a database with at least one.");
-  check_image(query, "the query", options.synthesized);
-  for (size_t k = 0; k < examples.size(); ++k) check_image(examples[k], "example " + std::to_string(k), {});
   size_t planes = examples.front().planes.size();
   for (const PatchImage& e : examples) planes = std::min(planes, e.planes.size());
   check_channels(options, int(planes));
+  check_image(query, "the query", options.synthesized);
+  for (size_t k = 0; k < examples.size(); ++k) check_image(examples[k], "example " + std::to_string(k), {});
   return Optimizer(query, examples, options, update, agree).run(progress);
 }
 

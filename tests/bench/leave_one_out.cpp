@@ -61,10 +61,9 @@ cv::Mat moved(const cv::Mat& depth, const examples::Example& e, const examples::
 
 }  // namespace
 
-void measure(examples::ExampleSource& all, int k, const render::View& view, const depth::DepthOptions& options,
-             double share, Score& score, examples::ExampleSource* queries) {
-  Others others(all, k);
-  const examples::Example q = (queries ? *queries : all).get(k, view);
+depth::DepthResult compare_with_others(examples::ExampleSource& others, const examples::Example& q,
+                                       const render::View& view, const depth::DepthOptions& options, double share,
+                                       Score& score) {
   Progress quiet;
   const Stopwatch watch;
   const depth::DepthResult r = depth::reconstruct_depth({q.image, q.mask}, others, options, quiet);
@@ -94,6 +93,13 @@ void measure(examples::ExampleSource& all, int k, const render::View& view, cons
   score.angle += away * share;
   score.found += away <= 5;
   ++score.count;
+  return r;
+}
+
+void measure(examples::ExampleSource& all, int k, const render::View& view, const depth::DepthOptions& options,
+             double share, Score& score, examples::ExampleSource* queries) {
+  Others others(all, k);
+  compare_with_others(others, (queries ? *queries : all).get(k, view), view, options, share, score);
 }
 
 }  // namespace parts::bench

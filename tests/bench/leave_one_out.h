@@ -46,6 +46,13 @@ struct Score {
   int count = 0, found = 0;
 };
 
+/// Reconstructs a query from examples that it is none of, and compares with what they say otherwise.
+/// @param view   of the query
+/// @param share  of this query in the score
+depth::DepthResult compare_with_others(examples::ExampleSource& others, const examples::Example& query,
+                                       const render::View& view, const depth::DepthOptions& options, double share,
+                                       Score& score);
+
 /// One query, and what the others say of it.
 /// @param queries  where the query is rendered, if not like the others
 void measure(examples::ExampleSource& all, int k, const render::View& view, const depth::DepthOptions& options,

@@ -122,6 +122,52 @@ class DepthToMesh(lib.MeshCase):
         extended = rasters.read(self.folder / "depth_texture.png")
         self.assertTrue((extended[0, 0] != rasters.picture()[0, 0]).any(), "no background at silhouettes")
 
+    def test_background_of_any_number(self):
+        """The same mesh as with NaN; the log says so; the user may say otherwise."""
+        expected = self.result(BackDepth=rasters.save_tif(self.folder / "b.tif", self.back)).mesh()
+        for far in (1e10, 65504, 65535, 100, 3.4e38):
+            front, back = (rasters.save_tif(self.folder / f"{name}.tif", np.nan_to_num(raster, nan=far))
+                           for name, raster in (("front", self.front), ("behind", self.back)))
+            result = self.result(Depth=front, BackDepth=back)
+            np.testing.assert_array_equal(result.mesh().v, expected.v, str(far))
+            np.testing.assert_array_equal(result.mesh().f, expected.f)
+            self.assertAlmostEqual(float(result.figures()["background"]) / far, 1, places=4)
+            self.assertEqual(int(result.figures()["background_pixels"]), int(np.isnan(self.front).sum()))
+        file = rasters.save_tif(self.folder / "wall.tif", np.nan_to_num(self.front, nan=300))
+        kept = self.result(Depth=file, Background="none")
+        self.assertEqual(lib.components(kept.mesh().f), 2)
+        self.assertNotIn("background", kept.figures())
+        named = self.result(Depth=file, Background="300")
+        self.assertEqual(lib.components(named.mesh().f), 1)
+        millimetres = rasters.save_png16(self.folder / "mm.png", np.nan_to_num(self.front, nan=655.35), 0.01)
+        self.assertEqual(lib.components(self.result(Depth=millimetres, DepthScale=0.01).mesh().f), 1)
+        self.fails("auto or none", Background="far")
+
+    def test_the_colour_camera_of_the_same_device(self):
+        """Other sensors cut the same view a little differently."""
+        depth = rasters.save_tif(self.folder / "wide.tif", np.full((96, 170), 5.0))
+        image = np.zeros((180, 320, 3))
+        image[80:100, 140:180] = 255  # the middle
+        result = self.result(Depth=depth, Image=rasters.save_image(self.folder / "wide.png", image))
+        mesh = result.mesh()
+        self.assertIn("image_proportions", result.figures())
+        corners = mesh.v[mesh.f].reshape(-1, 3)
+        uv = mesh.wedge[:, :, :2].reshape(-1, 2)
+        np.testing.assert_allclose(uv[:, 0], (corners[:, 0] + 85) / 170, atol=1e-5)
+        inside = abs(corners[:, 1]) < 40
+        np.testing.assert_allclose(uv[inside, 1], 0.5 + corners[inside, 1] * (320 / 170) / 180, atol=1e-5)
+
+    def test_orientation_tags(self):
+        """A camera's own pair: the tag turns the image for the eye, and the depth has none."""
+        from PIL import Image
+        exif = Image.Exif()
+        exif[0x0112] = 3
+        image = rasters.save_image(self.folder / "held.jpg", rasters.picture(), quality=95, exif=exif)
+        result = self.result(Image=image)
+        self.assertIn("as it is stored", result.figures()["image_orientation"])
+        texture = rasters.read(result.figures()["texture"])
+        self.assertLess(abs(texture[:, :, :3].astype(int) - rasters.picture()).mean(), 4)
+
     def test_a_texture_file_of_ones_own(self):
         target = self.folder / "mine.png"
         result = self.result(Image=self.image, TextureFile=target)

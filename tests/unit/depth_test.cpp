@@ -254,7 +254,7 @@ TEST(Depth, NoiseIsNotTrusted) {
   noise.fill(image, cv::RNG::UNIFORM, 0, 255);
   cv::rectangle(mask, {20, 10, 35, 70}, 255, cv::FILLED);
   const depth::DepthResult r = run({image, mask}, all, known_view());
-  EXPECT_FALSE(r.trusted) << r.strangeness;
+  EXPECT_FALSE(r.trusted) << r.evidence.strangeness;
 }
 
 TEST(Depth, FindsTheForegroundBeforePlainAndUnevenBackgrounds) {
