@@ -143,7 +143,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "seen", colors.seen);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   Outcome outcome;
-  outcome.layers.push_back({"Colorized", std::move(mesh)});
+  outcome.layers.push_back({"Colorized", std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
   outcome.current = 0;
   outcome.hidden = {inputs.layer("Mesh")};
   return outcome;

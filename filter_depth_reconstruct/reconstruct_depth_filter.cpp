@@ -259,7 +259,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "faces", result.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   Outcome outcome;
-  outcome.layers.push_back({"Reconstructed", std::move(result.mesh), true, r.camera});
+  outcome.layers.push_back({"Reconstructed", std::move(result.mesh), true, r.camera, check_of_depth(options.back)});
   outcome.current = 0;
   return outcome;
 }
