@@ -85,7 +85,7 @@ class Placed:
 def runs(placed, databases, folder):
     """Of each filter: its name, layers, script, whether a layer is saved."""
     bent = np.roll((0.0, 1.0, 0.0), placed.axis)
-    models, images = folder / "models", folder / "mappings"
+    models, images = folder / "models", folder / "seen_mappings"
     models.mkdir()
     (models / "m.ply").write_bytes(placed.file.read_bytes())
     region = dict(Region="Box", **placed.slab("Region", 0.85, 1), Database=databases.beans, Candidates=1)
@@ -101,7 +101,7 @@ def runs(placed, databases, folder):
     yield "fill_hole", [placed.file], template("fill_hole", Database=databases.beans, Candidates=1, Blend=1), True
     yield "colorize_mesh", [placed.file], template(
         "colorize_mesh", Database=databases.painted, Target="Vertex colour", PatchSizes="5", Width=40, Height=50), True
-    yield "build_mappings", [], template("build_mappings", Models=models, Output=f"{images}.mlp", Width=60, Height=80), False
+    yield "build_mappings", [], template("build_mappings", Models=models, Output=folder / "seen.mlp", Width=60, Height=80), False
     made = sorted(images.iterdir()) if images.is_dir() else []
     backs = [f for f in made if "back" in f.name]
     depth = next((f for f in made if f.suffix == ".tif" and f not in backs), None)
@@ -111,7 +111,7 @@ def runs(placed, databases, folder):
     yield "depth_to_mesh", [], template("depth_to_mesh", Depth=depth, BackDepth=backs[0] if backs else ""), True
     yield "colorize_depth", [], template("colorize_depth", Depth=depth, Database=databases.painted, PatchSizes="5"), True
     yield "reconstruct_depth", [], template(
-        "reconstruct_depth", Image=color, Database=f"{images}.mlp", PatchSizes="5,5", UpdateViews=False), True
+        "reconstruct_depth", Image=color, Database=folder / "seen.mlp", PatchSizes="5,5", UpdateViews=False), True
 
 
 def digests(folder):
@@ -157,19 +157,22 @@ def read_by_the_host(file, timeout):
     return out if len(shapes.read_ply(out).f) else None
 
 
-def over_mesh(file, databases, timeout):
+def over_mesh(file, databases, timeout, tell):
     """All filters over one mesh."""
     start = time.monotonic()
     placed = read_by_the_host(file, timeout)
     rows = []
     if placed is None:
-        return [Graded(file.name, "(reading)", "host", "no faces that MeshLab reads", time.monotonic() - start)]
+        rows.append(Graded(file.name, "(reading)", "host", "no faces that MeshLab reads", time.monotonic() - start))
+        tell(rows[-1])
+        return rows
     placed, folder = Placed(placed), lib.work_folder()
     for slug, layers, step, saved in runs(placed, databases, folder):
         start = time.monotonic()
         inputs = [placed.file.parent, databases.folder] + ([] if slug == "build_mappings" else [folder])
         grade, note = graded(layers, step, saved, inputs, timeout)
         rows.append(Graded(file.name, slug, grade, note, time.monotonic() - start))
+        tell(rows[-1])
     return rows
 
 
@@ -182,9 +185,7 @@ def meshes(folder, tenth=False):
 def over(files, timeout, tell=lambda row: None):
     databases, rows = Databases(), []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for found in pool.map(lambda f: over_mesh(f, databases, timeout), files):
-            for row in found:
-                tell(row)
+        for found in pool.map(lambda f: over_mesh(f, databases, timeout, tell), files):
             rows += found
     return rows
 

@@ -8,7 +8,7 @@ import rasters
 import shapes
 from lib import template
 
-FINE, SENTENCE = {"ok", "flawed", "sentence"}, {"sentence"}
+FINE, SENTENCE, HOST = {"ok", "flawed", "sentence"}, {"sentence"}, {"host"}
 NAN = float("nan")
 
 
@@ -26,7 +26,7 @@ def values_of(slug):
     points, boxes, lengths = points_and_lengths(slug)
     for name in lengths:
         for value, allowed in (("1e12", FINE), ("1e22", SENTENCE), ("1e30", SENTENCE), ("-1", SENTENCE),
-                               ("nan", SENTENCE), ("many", FINE), ("1e-30", FINE)):
+                               ("nan", SENTENCE), ("many", HOST), ("1e-30", FINE)):
             yield f"{name} {value}", allowed, {name: value}
     for name in boxes:
         used = {name: "Box"} if name in choices else {}
