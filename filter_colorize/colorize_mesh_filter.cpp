@@ -146,7 +146,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
         "The colours of what no view sees could not be fitted to those around; they are the most similar model's.");
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   Outcome outcome;
-  outcome.layers.push_back({"Colorized", std::move(mesh)});
+  outcome.layers.push_back({"Colorized", std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
   outcome.current = 0;
   outcome.hidden = {inputs.layer("Mesh")};
   return outcome;

@@ -77,7 +77,8 @@ host::Filter build_mappings_filter() {
                       "reconstruction can render them as well, from any view.") +
               depth_reference,
           parameters,
-          apply};
+          apply,
+          false};
 }
 
 }  // namespace parts

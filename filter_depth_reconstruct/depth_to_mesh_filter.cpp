@@ -5,6 +5,7 @@
 
 #include "filters.h"
 #include "parts/base/error.h"
+#include "parts/host/common.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/background.h"
 #include "parts/render/depth_mesh.h"
@@ -142,7 +143,9 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "vertices", result.mesh.vertex_count());
   log_value(progress, "faces", result.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  outcome.layers.push_back({in.back.empty() ? "Depth surface" : "Depth solid", std::move(result.mesh), true, seen});
+  const bool solid = !in.back.empty();
+  outcome.layers.push_back(
+      {solid ? "Depth solid" : "Depth surface", std::move(result.mesh), true, seen, check_of_depth(solid)});
   outcome.current = 0;
   return outcome;
 }

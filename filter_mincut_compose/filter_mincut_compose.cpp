@@ -133,11 +133,18 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
               "each other, or mark parts that lie on both sides of the place where they meet.");
 
   Outcome outcome;
-  outcome.layers.push_back({"Composed", std::move(result.composed)});
+  mesh::ResultRules whole, open;
+  whole.joins = true;
+  open.may_part = open.may_open = true;
+  mesh::ResultRules beside = open;  // a hat on a head
+  beside.may_cross = true;
+  outcome.layers.push_back(
+      {"Composed", std::move(result.composed), true, {}, {{a, b}, options.stitch ? whole : beside}});
   outcome.current = 0;
-  if (clipped) outcome.layers.push_back({"Clipped A", std::move(result.clipped_a), false});
-  if (clipped) outcome.layers.push_back({"Clipped B", std::move(result.clipped_b), false});
-  if (options.transition_surface) outcome.layers.push_back({"Transition surface", std::move(result.transition), false});
+  if (clipped) outcome.layers.push_back({"Clipped A", std::move(result.clipped_a), false, {}, {{a}, open}});
+  if (clipped) outcome.layers.push_back({"Clipped B", std::move(result.clipped_b), false, {}, {{b}, open}});
+  if (options.transition_surface)
+    outcome.layers.push_back({"Transition surface", std::move(result.transition), false, {}, {{}, open}});
   outcome.hidden = {a, b};
   return outcome;
 }
@@ -165,7 +172,9 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
     log_report(results[i].report, results[i].composed, progress);
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
-    outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size()});
+    mesh::ResultRules rules;
+    rules.moved = true;
+    outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size(), {}, {{layer}, rules}});
   }
   outcome.current = int(results.size()) - 1;
   outcome.hidden = {layer};
@@ -184,7 +193,7 @@ std::vector<host::Filter> host::filters() {
                    "allow it: principal axes give first guesses, iterated closest points refine each, and the best "
                    "match wins.") +
            composition_reference,
-       align_parameters, align_layer},
+       align_parameters, align_layer, false},
       {"Min-Cut: Compose Two Meshes", "compose", Menu::Remeshing,
        std::string("Joins two overlapping models into one, without a visible seam. Place the models so that they "
                    "overlap where they should be joined, and mark on each some faces that <b>must survive</b>. The "

@@ -27,6 +27,9 @@ std::string number(double x) {
   return text;
 }
 
+/// A model of the database, as found.
+const Outcome::Check as_it_is{{}, {}, true};
+
 /// What the three filters have in common.
 mend::MendOptions query_options(const Inputs& inputs) {
   mend::MendOptions o;
@@ -116,7 +119,7 @@ Outcome find(const Inputs& inputs, Progress& progress) {
   const bool several = !found.empty() && found.back().region > 0;
   for (mend::Found& f : found) {
     const std::string where = several ? "Region " + std::to_string(f.region + 1) + ": " : "";
-    outcome.layers.push_back({where + f.name, std::move(f.mesh), outcome.layers.empty()});
+    outcome.layers.push_back({where + f.name, std::move(f.mesh), outcome.layers.empty(), {}, as_it_is});
   }
   outcome.current = 0;
   return outcome;
@@ -149,11 +152,11 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   Outcome outcome;
-  outcome.layers.push_back({fill ? "Filled" : "Restored", std::move(mended.mesh)});
+  outcome.layers.push_back({fill ? "Filled" : "Restored", std::move(mended.mesh), true, {}, {{layer}}});
   outcome.current = 0;
   if (add_candidate)
     for (mend::Found& f : mended.candidates)
-      outcome.layers.push_back({"Candidate " + f.name, std::move(f.mesh), false});
+      outcome.layers.push_back({"Candidate " + f.name, std::move(f.mesh), false, {}, as_it_is});
   outcome.hidden = {layer};
   return outcome;
 }

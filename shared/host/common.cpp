@@ -21,6 +21,13 @@ Mesh surface_of(const Layer& layer) {
   return mesh;
 }
 
+Outcome::Check check_of_depth(bool solid) {
+  Outcome::Check check;
+  check.rules.may_part = true;
+  check.rules.may_open = !solid;
+  return check;
+}
+
 void add_box(const std::string& name, const std::string& label, const Box& box, std::vector<Parameter>& list) {
   const Vec3 low = box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(), high = box.isEmpty() ? low : box.max();
   list.push_back(point(name + "Min", low, label + ": box, low corner",

@@ -15,6 +15,9 @@ extern const char* const composition_reference;
 /// A layer's mesh. @throws UserError  it has no faces
 Mesh surface_of(const Layer& layer);
 
+/// Of a mesh made from depth: torn where the depth jumps, and open unless it has a back.
+Outcome::Check check_of_depth(bool solid);
+
 /// `name`Min and `name`Max: the corners of a box that a choice above asks for.
 void add_box(const std::string& name, const std::string& label, const Box& box, std::vector<Parameter>& list);
 

@@ -9,6 +9,7 @@
 
 #include "parts/base/progress.h"
 #include "parts/mesh/mesh.h"
+#include "parts/mesh/result_check.h"
 #include "parts/render/camera.h"
 
 class MeshModel;  // the host's layer
@@ -95,11 +96,18 @@ class Inputs {
 /// What a filter wants done to the document. Nothing is done before the filter
 /// has returned, so a failed or cancelled one leaves the document as it was.
 struct Outcome {
+  /// What the host compares a new layer with before it is added.
+  struct Check {
+    std::vector<Layer> inputs = {};  ///< whose surfaces it is made of; none: it is to have no flaw at all
+    mesh::ResultRules rules = {};
+    bool as_it_is = false;  ///< a model that was not made here: its flaws are its own
+  };
   struct NewLayer {
     std::string name;
     Mesh mesh;
     bool visible = true;
     std::optional<render::Camera> camera = {};  ///< through which its image was seen
+    Check check = {};
   };
   struct NewRaster {
     std::string name;
@@ -129,6 +137,7 @@ struct Filter {
   std::string help;  ///< HTML
   std::function<std::vector<Parameter>(const Scene&)> parameters;
   std::function<Outcome(const Inputs&, Progress&)> apply;
+  bool makes_mesh = true;  ///< gets the parameter AllowFlaws
 };
 
 /// The filters of the plugin that is being built; each plugin folder defines it.

@@ -6,8 +6,10 @@
 
 #include <Eigen/LU>
 #include <QDir>
+#include <cmath>
 
 #include "parts/host/filter.h"
+#include "parts/host/sizes.h"
 
 namespace parts::host {
 
@@ -121,7 +123,12 @@ void read_faces(const MeshModel& layer, const Placing& placing, const std::vecto
 }  // namespace
 
 std::string Layer::name() const { return model_->label().toStdString(); }
-Mesh Layer::mesh() const { return read_layer(*model_); }
+
+Mesh Layer::mesh() const {
+  Mesh mesh = read_layer(*model_);
+  check_sizes(mesh, coordinate_step(*model_), name());
+  return mesh;
+}
 
 Mesh read_layer(const MeshModel& layer) {
   const Placing placing(to_eigen(layer.cm.Tr));
@@ -141,6 +148,16 @@ Box layer_box(const MeshModel& layer) {
     if (p.allFinite()) box.extend(p);
   }
   return box;
+}
+
+double coordinate_step(const MeshModel& layer) {
+  const Eigen::Matrix3d linear = to_eigen(layer.cm.Tr).topLeftCorner<3, 3>();
+  float largest = 0;
+  for (const CFaceO& f : layer.cm.face)
+    for (int k = 0; k < 3 && !f.IsD(); ++k)
+      for (int c = 0; c < 3; ++c)
+        if (const float x = std::abs(f.cV(k)->cP()[c]); std::isfinite(x)) largest = std::max(largest, x);
+  return single_precision_step(largest) * linear.colwise().norm().maxCoeff();
 }
 
 void write_layer(const Mesh& mesh, MeshModel& layer) {

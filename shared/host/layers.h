@@ -17,6 +17,10 @@ Mesh read_layer(const MeshModel& layer);
 /// The bounding box of read_layer(), cheaply; empty where no vertex is finite.
 Box layer_box(const MeshModel& layer);
 
+/// How far apart the coordinates that the host can keep lie where the layer's
+/// surface is: it has them in single precision. World units.
+double coordinate_step(const MeshModel& layer);
+
 /// Fills an empty layer: elements, attributes with their data masks, box and
 /// normals (the mesh's where it has them).
 void write_layer(const Mesh& mesh, MeshModel& layer);

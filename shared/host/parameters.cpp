@@ -8,6 +8,7 @@
 #include "parts/base/error.h"
 #include "parts/host/cameras.h"
 #include "parts/host/layers.h"
+#include "parts/host/sizes.h"
 
 namespace parts::host {
 
@@ -77,6 +78,16 @@ Scene scene_of(const MeshDocument& document) {
   if (current) scene.current = layer_box(*current);
   if (other != current) scene.other = layer_box(*other);
   return scene;
+}
+
+std::vector<Parameter> parameters_of(const Filter& filter, const Scene& scene) {
+  std::vector<Parameter> list = filter.parameters(scene);
+  if (filter.makes_mesh)
+    list.push_back(flag("AllowFlaws", true, "Allow flaws",
+                        "A result with flaws that its inputs do not have (pieces, open borders, edges of more than two "
+                        "faces, crossing faces) is added with a warning. Without it the filter fails and changes "
+                        "nothing."));
+  return list;
 }
 
 void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list) {
@@ -153,8 +164,21 @@ int RichInputs::integer(const char* name) const { return int(in_range(name, valu
 
 double RichInputs::number(const char* name) const { return in_range(name, value(name, &Value::isFloat).getFloat()); }
 
+/// Lengths beyond this reach everything in the layers that the filter is about.
+double RichInputs::reach() const {
+  double reach = 0;
+  for (const Parameter& p : parameters_) {
+    if (p.kind != Parameter::Kind::CurrentLayer && p.kind != Parameter::Kind::OtherLayer) continue;
+    const Box box = layer_box(*layer(p.name.c_str()).model());
+    if (!box.isEmpty()) reach = std::max(reach, 1e6 * box.diagonal().norm());
+  }
+  return reach > 0 ? reach : kLargestSize;
+}
+
 double RichInputs::length(const char* name) const {
-  return in_range(name, value(name, &Value::isAbsPerc).getAbsPerc());
+  const double length = in_range(name, value(name, &Value::isAbsPerc).getAbsPerc());
+  check_size(name, length);
+  return std::min(length, reach());
 }
 
 int RichInputs::choice(const char* name) const { return int(in_range(name, value(name, &Value::isEnum).getEnum())); }
@@ -163,6 +187,7 @@ Vec3 RichInputs::point(const char* name) const {
   const vcg::Point3f p = value(name, &Value::isPoint3f).getPoint3f();
   const Vec3 point(p.X(), p.Y(), p.Z());
   if (!point.allFinite()) throw UserError(std::string(name) + " is not a point; give three numbers.");
+  check_size(name, point.cwiseAbs().maxCoeff());
   return point;
 }
 

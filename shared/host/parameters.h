@@ -11,6 +11,9 @@ namespace parts::host {
 /// Boxes of the layers that current_layer() and other_layer() propose.
 Scene scene_of(const MeshDocument& document);
 
+/// A filter's own parameters, and AllowFlaws where it makes a mesh.
+std::vector<Parameter> parameters_of(const Filter& filter, const Scene& scene);
+
 /// Adds the host's form of each parameter, with its default in this document.
 void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list);
 
@@ -33,6 +36,7 @@ class RichInputs : public Inputs {
   const Parameter& declaration(const char* name) const;
   const Value& value(const char* name, bool (Value::*is)() const) const;
   double in_range(const char* name, double value) const;
+  double reach() const;
 
   std::vector<Parameter> parameters_;
   const RichParameterList& list_;

@@ -7,6 +7,7 @@
 #include "parts/host/cameras.h"
 #include "parts/host/layers.h"
 #include "parts/host/parameters.h"
+#include "parts/host/results.h"
 
 namespace parts::host {
 
@@ -32,6 +33,26 @@ std::string guarded(Run&& run) {
     return "The filter met an internal error; nothing was changed, please report it with the input.";
   }
 }
+
+/// What a run logs: figures at once, warnings at its end, where they are seen.
+class RunLog {
+ public:
+  using Write = std::function<void(GLLogStream::Levels level, const std::string& line)>;
+  explicit RunLog(Write write) : write_(std::move(write)) {}
+  ~RunLog() {
+    for (const std::string& line : warnings_) write_(GLLogStream::WARNING, line);
+  }
+  void add(const std::string& line) {
+    if (line.rfind("warning: ", 0) == 0)
+      warnings_.push_back(line);
+    else
+      write_(GLLogStream::FILTER, line);
+  }
+
+ private:
+  Write write_;
+  std::vector<std::string> warnings_;
+};
 
 /// Adds the new layers, all or none, and then does what cannot fail.
 void commit(const Outcome& outcome, MeshDocument& document) {
@@ -107,7 +128,7 @@ int Plugin::postCondition(QAction* action) const {
 
 void Plugin::initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) {
   textured_ = false;
-  declare(filter(action).parameters(scene_of(document)), document, list);
+  declare(parameters_of(filter(action), scene_of(document)), document, list);
 }
 
 bool Plugin::applyFilter(QAction* action, MeshDocument& document, const RichParameterList& list,
@@ -126,9 +147,14 @@ void Plugin::run(const Filter& filter, MeshDocument& document, const RichParamet
     // meshlabserver prints the stage as it is, the GUI shows it on one line.
     return !callback || callback(percent, (std::string(stage) + "\n").c_str());
   };
-  Progress progress(report, [this](const std::string& line) { Log(GLLogStream::FILTER, line); });
-  const RichInputs inputs(filter.parameters(scene_of(document)), list, document);
-  const Outcome outcome = filter.apply(inputs, progress);
+  RunLog lines([this](GLLogStream::Levels level, const std::string& line) { Log(level, line); });
+  Progress progress(report, [&lines](const std::string& line) { lines.add(line); });
+  const RichInputs inputs(parameters_of(filter, scene_of(document)), list, document);
+  const bool allow_flaws = !filter.makes_mesh || inputs.flag("AllowFlaws");
+  Progress computing = progress.part(0, 97);
+  const Outcome outcome = filter.apply(inputs, computing);
+  progress.stage("Checking the result", 97, 100);
+  check_results(outcome, allow_flaws, progress);
   commit(outcome, document);
   textured_ = outcome.current >= 0 && !outcome.layers[outcome.current].mesh.textures.empty();
 }

@@ -7,6 +7,7 @@
 
 #include "parts/base/error.h"
 #include "parts/host/plugin.h"
+#include "support/shapes.h"
 
 namespace parts::host {
 namespace {
@@ -198,6 +199,7 @@ TEST_F(HostPlugin, ValuesOfTheWrongTypeAreNamed) {
   };
   RichParameterList wrong;
   wrong.addParam(RichInt("Number", 1));
+  wrong.addParam(RichBool("AllowFlaws", true));
   EXPECT_FALSE(plugin.applyFilter(action(), document, wrong, nullptr));
   EXPECT_EQ(plugin.errorMsg(),
             "The script gives Number as a RichInt; take its line from the filter's template in scripts/.");
@@ -210,6 +212,174 @@ TEST_F(HostPlugin, FiguresAreLogged) {
   };
   EXPECT_TRUE(apply());
   EXPECT_EQ(last_line(), "cost: 1234567.25");
+}
+
+/// The lines of a run, and how they were meant.
+using Lines = std::vector<std::pair<int, std::string>>;
+Lines lines_of(const GLLogStream& log) {
+  Lines lines;
+  for (const auto& line : log.logStringList()) lines.emplace_back(line.first, line.second.toStdString());
+  return lines;
+}
+
+TEST_F(HostPlugin, WarningsComeLast) {
+  next = [](const Inputs&, Progress& progress) {
+    log_value(progress, "warning", "Look here.");
+    log_value(progress, "cost", 1);
+    return Outcome();
+  };
+  EXPECT_TRUE(apply());
+  EXPECT_EQ(lines_of(log), (Lines{{GLLogStream::FILTER, "cost: 1"}, {GLLogStream::WARNING, "warning: Look here."}}));
+  log.Clear();
+  next = [](const Inputs&, Progress& progress) -> Outcome {
+    log_value(progress, "warning", "Look here.");
+    throw UserError("Do this.");
+  };
+  expect_failure("Do this.");
+}
+
+/// A result that is compared with both layers.
+Outcome composed(const Inputs& in, Mesh mesh) {
+  Outcome out;
+  out.layers = {{"Result", std::move(mesh), true, {}, {{in.layer("A"), in.layer("B")}}}};
+  out.current = 0;
+  return out;
+}
+
+TEST_F(HostPlugin, ResultsAreComparedWithTheirInputs) {
+  next = [](const Inputs& in, Progress&) { return composed(in, triangle()); };
+  ASSERT_TRUE(apply());
+  EXPECT_EQ(lines_of(log), (Lines{{GLLogStream::FILTER, "result_pieces: 1"},
+                                  {GLLogStream::FILTER, "result_borders: 1"},
+                                  {GLLogStream::FILTER, "result_nonmanifold: 0"},
+                                  {GLLogStream::FILTER, "result_pinches: 0"},
+                                  {GLLogStream::FILTER, "result_flipped: 0"},
+                                  {GLLogStream::FILTER, "result_crossings: 0"},
+                                  {GLLogStream::FILTER, "input_pieces: 2"},
+                                  {GLLogStream::FILTER, "input_borders: 2"},
+                                  {GLLogStream::FILTER, "input_nonmanifold: 0"},
+                                  {GLLogStream::FILTER, "input_pinches: 0"},
+                                  {GLLogStream::FILTER, "input_flipped: 0"},
+                                  {GLLogStream::FILTER, "input_crossings: 0"}}));
+}
+
+Mesh two_flawed_triangles() {
+  Mesh m;
+  m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -1}, {0.3, 0.2, -1}, {0.2, 0.2, 1}};
+  m.faces = {{0, 1, 2}, {3, 4, 5}};
+  return m;
+}
+
+TEST_F(HostPlugin, AResultThatIsWorseEndsInAWarning) {
+  next = [](const Inputs& in, Progress&) { return composed(in, two_flawed_triangles()); };
+  ASSERT_TRUE(apply());
+  EXPECT_EQ(log.logStringList().last().first, int(GLLogStream::WARNING));
+  EXPECT_EQ(last_line(),
+            "warning: The result \"Result\" has 1 pair of crossing faces, which its inputs do not have; look at it "
+            "before you use it.");
+  EXPECT_EQ(document.meshList.size(), 3) << "it is added all the same";
+}
+
+TEST_F(HostPlugin, WithoutAllowFlawsItIsAFailure) {
+  next = [](const Inputs& in, Progress&) { return composed(in, two_flawed_triangles()); };
+  list.setValue("AllowFlaws", BoolValue(false));
+  expect_failure(
+      "The result \"Result\" has 1 pair of crossing faces, which its inputs do not have; change the parameters, or set "
+      "AllowFlaws to look at it.");
+  next = [](const Inputs& in, Progress&) { return composed(in, triangle()); };
+  EXPECT_TRUE(apply()) << "nothing is wrong with this one";
+}
+
+TEST_F(HostPlugin, AResultThatSaysNothingOfInputsIsToBeFlawless) {
+  next = [](const Inputs&, Progress&) {
+    Outcome out;
+    out.layers = {{"Result", triangle()}};
+    return out;
+  };
+  list.setValue("AllowFlaws", BoolValue(false));
+  expect_failure("The result \"Result\" has 1 open border; change the parameters, or set AllowFlaws to look at it.");
+}
+
+TEST_F(HostPlugin, AModelAsItIsIsNotJudged) {
+  next = [](const Inputs&, Progress&) {
+    Outcome out;
+    out.layers = {{"Result", two_flawed_triangles(), true, {}, {{}, {}, true}}};
+    out.current = 0;
+    return out;
+  };
+  list.setValue("AllowFlaws", BoolValue(false));
+  EXPECT_TRUE(apply());
+  EXPECT_EQ(last_line(), "result_crossings: 1");
+}
+
+TEST_F(HostPlugin, AResultThatIsNoMeshIsNeverAdded) {
+  next = [](const Inputs& in, Progress&) {
+    Mesh m = triangle();
+    m.faces[0][2] = 3;
+    return composed(in, m);
+  };
+  expect_failure(
+      "The filter met an internal error (a face without its vertex); nothing was changed, please report it with the "
+      "input.");
+}
+
+TEST_F(HostPlugin, SizesThatCannotBeComputedWithAreRefusedAtTheDoor) {
+  next = [](const Inputs& in, Progress&) {
+    in.length("Length"), in.point("Point"), in.layer("A").mesh();
+    return Outcome();
+  };
+  list.setValue("Length", AbsPercValue(1e22f));
+  expect_failure("Length is 1e+22, too large to compute with; give at most 1e+12.");
+  list.setValue("Length", AbsPercValue(0));
+  list.setValue("Point", Point3fValue(vcg::Point3f(0, -3e38f, 0)));
+  expect_failure("Point is 3e+38, too large to compute with; give at most 1e+12.");
+  list.setValue("Point", Point3fValue(vcg::Point3f(0, 0, 0)));
+  EXPECT_TRUE(apply());
+  document.meshList[0]->cm.vert[2].P() = {0, 1e21f, 0};
+  EXPECT_FALSE(apply());
+  EXPECT_EQ(last_line(),
+            "The layer \"one\" has coordinates of 1e+21, too large to compute with; scale it down to 1e+12 or less.");
+}
+
+TEST_F(HostPlugin, LengthsReachNoFartherThanTheLayers) {
+  next = [](const Inputs& in, Progress&) {
+    EXPECT_EQ(in.length("Length"), 5e6) << "the diagonal, a million times";
+    return Outcome();
+  };
+  list.setValue("Length", AbsPercValue(1e11f));
+  EXPECT_TRUE(apply());
+}
+
+/// A ball of 0.24 m as a survey has it, in metres.
+TEST_F(HostPlugin, AScanFarFromTheOriginIsRefusedInWords) {
+  const auto place = [&](const Mesh& mesh, const Vec3& at) {
+    CMeshO& m = document.meshList[0]->cm;
+    m.Clear();
+    vcg::tri::Allocator<CMeshO>::AddVertices(m, mesh.vertices.size());
+    for (int i = 0; i < mesh.vertex_count(); ++i) {
+      const Vec3 p = mesh.vertices[i] + at;
+      m.vert[i].P() = {float(p.x()), float(p.y()), float(p.z())};
+    }
+    for (const Triangle& f : mesh.faces) vcg::tri::Allocator<CMeshO>::AddFace(m, f[0], f[1], f[2]);
+  };
+  next = [](const Inputs& in, Progress&) {
+    in.layer("A").mesh();
+    return Outcome();
+  };
+  const Mesh ball = test::sphere({0, 0, 0}, 0.12);
+  place(ball, {0, 0, 0});
+  EXPECT_TRUE(apply());
+  place(ball, {100, 50, 7});
+  EXPECT_TRUE(apply());
+  place(ball, {455812, 5423377, 118});
+  EXPECT_FALSE(apply());
+  EXPECT_EQ(
+      last_line(),
+      "The coordinates of the layer \"one\" are rounded to 0.5, as they lie far from the origin, which is too coarse "
+      "for a model of size 0.25; move it to the origin in the program that made it, and load it again.");
+  // Brought back by a matrix it is as coarse as before.
+  document.meshList[0]->cm.Tr.SetTranslate(-455812, -5423377, -118);
+  EXPECT_FALSE(apply());
 }
 
 TEST_F(HostPlugin, TheHostReloadsTexturesOnlyOfAResultThatHasThem) {

@@ -84,6 +84,11 @@ class Run:
         return dict(self.logs[step])
 
     @property
+    def warnings(self):
+        """The sentences of the lines "warning: ..."."""
+        return [value for log in self.logs for name, value in map(tuple, log) if name == "warning"]
+
+    @property
     def sentence(self):
         """What the filter said when it failed."""
         lines = self.text.split("Problem with filter")[0].splitlines()
@@ -182,6 +187,21 @@ def components(f):
         if (low == label).all():
             return len(np.unique(label))
         label = low
+
+
+def edge_pieces(f):
+    """How many of faces joined by edges."""
+    _, back, _ = edge_counts(f)
+    edge_of = back.reshape(3, -1).T  # of each face its three
+    label = np.arange(len(f))
+    while True:
+        low = np.full(edge_of.max() + 1 if len(f) else 0, len(f))
+        np.minimum.at(low, edge_of.ravel(), np.repeat(label, 3))
+        new = low[edge_of].min(axis=1) if len(f) else label
+        new = new[new]
+        if (new == label).all():
+            return len(np.unique(label))
+        label = new
 
 
 class MeshCase(unittest.TestCase):

@@ -11,7 +11,7 @@ import rasters
 import shapes
 from lib import template
 
-FINE, OK, SENTENCE = {"ok", "sentence"}, {"ok"}, {"sentence"}
+FINE, OK, SENTENCE = {"ok", "flawed", "sentence"}, {"ok"}, {"sentence"}
 WIDTH, HEIGHT = 60, 80
 
 
