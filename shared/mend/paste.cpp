@@ -264,7 +264,7 @@ Pasted paste(const Mesh& scan_with_islands, const Mesh& model, const mesh::Loop&
   const mesh::MeshCheck before = mesh::check(scan), loose_patch = mesh::check(patch.mesh);
   seam::SeamReport report;
   seam::stitch_parts(j, max_gap, report);
-  out.crossings = seam::finish_seam(j, edge, cut::Cut::Refined, options.smoothing, options.threads);
+  out.crossings = seam::finish_seam(j, edge, cut::Cut::Mesh, options.smoothing, options.threads);
   drop_unjoined(j.mesh, j.tag);
   const mesh::MeshCheck after = mesh::check(j.mesh);
   out.joined = report.loops_joined, out.capped = report.loops_capped;

@@ -25,7 +25,7 @@ struct RestoreOptions {
   bool fit_to_rim = true;            ///< bend the model onto the scan around the region; false: as it is (thesis)
   int tries = 5;                     ///< of so many models the first that closes what was opened is the base
   int blend = 16;                    ///< how many of the models are blended, at most; 1 = the base alone
-  cut::Cut cut = cut::Cut::Refined;  ///< Thesis: compose() with the constraints of Fig. 7
+  cut::Cut cut = cut::Cut::Mesh;  ///< Thesis: compose() with the constraints of Fig. 7
   int resolution = 0;                ///< of the thesis' cut
   seam::SeamSmoothing smoothing;     ///< distance 0 = two edges of the rim
   int threads = 0;                   ///< 0 = all cores; the result does not depend on it

@@ -102,13 +102,13 @@ double stitch_parts(Joined& j, double max_gap, SeamReport& report) {
 }
 
 long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
-  if (cut == cut::Cut::Refined)
+  if (cut == cut::Cut::Mesh)
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.35 * voxel, 1.2 * voxel});
   else
     tidy_seam(j.mesh, j.seam, j.fixed, j.tag, {0.2 * voxel, 0.2 * voxel});
   for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
-  if (cut == cut::Cut::Refined) even_seam(j.mesh, j.seam, j.fixed, 8);
+  if (cut == cut::Cut::Mesh) even_seam(j.mesh, j.seam, j.fixed, 8);
   smooth_seam(j.mesh, j.seam, j.fixed, smoothing.distance > 0 ? smoothing.distance : 2 * voxel, smoothing.iterations,
               smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);

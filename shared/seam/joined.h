@@ -29,7 +29,7 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
 /// borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 
-/// Removes the seam's slivers, evens it (Refined), smooths it, parts faces that
+/// Removes the seam's slivers, evens it (Mesh), smooths it, parts faces that
 /// cross, and mends the normals around it.
 /// @return pairs of faces at the seam that still cross
 long finish_seam(Joined& joined, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads);
