@@ -34,16 +34,7 @@ std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter,
 compose::ComposeOptions cut_options(const Inputs& inputs) {
   compose::ComposeOptions options;
   options.resolution = inputs.integer("Resolution");
-  switch (inputs.choice("Cut")) {
-    case 0:
-      options.cut = cut::Cut::Refined;
-      break;
-    case 1:
-      options.cut = cut::Cut::Thesis;
-      break;
-    default:
-      throw UserError("The cut \"Mesh\" is not available yet; choose Refined or Thesis.");
-  }
+  options.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh;  // a 2 of older scripts: Mesh
   options.smoothing = smoothing_of(inputs);
   return options;
 }

@@ -2,17 +2,19 @@
 #include "parts/compose/compose.h"
 
 #include <chrono>
-#include <memory>
+#include <optional>
 
-#include "parts/cut/crossings.h"
+#include "parts/compose/assemble.h"
+#include "parts/compose/clip_border.h"
 #include "parts/cut/decision.h"
+#include "parts/cut/mesh_cut.h"
 #include "parts/cut/rasterize.h"
 #include "parts/cut/transition.h"
 #include "parts/cut/transition_surface.h"
 #include "parts/cut/volume.h"
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/loops.h"
 #include "parts/seam/clip.h"
-#include "parts/seam/joined.h"
 
 namespace parts::compose {
 namespace {
@@ -25,14 +27,39 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-cut::Transition make_transition(const cut::Model& a, const cut::Model& b, const cut::Decision& d, cut::Cut cut) {
-  if (cut == cut::Cut::Thesis) return cut::Transition::along_voxels(d.voxels, d.labels);
-  return cut::Transition::smooth(d.voxels, d.labels,
-                                 cut::crossing_points(a.prepared.mesh, b.prepared.mesh, d.voxels, d.labels));
+/// The surface between what is left of the models, from their voxels.
+Mesh surface_between(const Mesh& a, const Mesh& b, const Box& volume) {
+  constexpr int kVoxels = 64, kSmoothing = 6;
+  const cut::Grid grid = cut::Grid::over(volume, kVoxels);
+  cut::JointVoxels voxels = cut::join(grid, cut::rasterize(a, {}, grid, 1), cut::rasterize(b, {}, grid, 1),
+                                      cut::VoxelSet(grid.count()), cut::VoxelSet(grid.count()));
+  cut::VoxelLabels labels;
+  for (std::uint8_t flags : voxels.flags)
+    labels.label.push_back(flags & cut::kHasA ? cut::VoxelLabels::kA : cut::VoxelLabels::kB);
+  return cut::transition_surface(voxels, labels, kSmoothing);
 }
 
-seam::Clipped clip_model(const cut::Model& model, bool of_a, const cut::Decision& d, const cut::Transition& transition,
-                         cut::Cut cut, int threads) {
+Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume, const ComposeOptions& options,
+                     Progress& progress) {
+  Assembly t;
+  progress.stage("Finding the minimal cut", 10, 60);
+  const cut::MeshCut cut = cut::cut_meshes(a, b, volume, options.threads, t.result.report, progress);
+  progress.stage("Clipping", 60, 75);
+  const double crumb = 1.5 * cut.edge;
+  seam::Clipped clipped[2] = {clip_border(cut.border[0], a.keep, crumb), clip_border(cut.border[1], b.keep, crumb)};
+  const auto loops = [&](int side) { return int(mesh::trace_loops(clipped[side].border).size()); };
+  if (loops(0) != cut.loops[0] || loops(1) != cut.loops[1]) {  // smoothing closed a border, or made one
+    clipped[0] = clip_border(cut.raw_border(0), a.keep, crumb);
+    clipped[1] = clip_border(cut.raw_border(1), b.keep, crumb);
+  }
+  if (options.transition_surface) t.result.transition = surface_between(clipped[0].mesh, clipped[1].mesh, volume);
+  assemble(a, std::move(clipped[0]), b, std::move(clipped[1]), {cut.edge, 3 * cut.edge + 1.5 * cut.gap}, options,
+           progress, t);
+  return t;
+}
+
+seam::Clipped clip_by_voxels(const cut::Model& model, bool of_a, const cut::Decision& d,
+                             const cut::Transition& transition, int threads) {
   const Mesh& mesh = model.prepared.mesh;
   const cut::Grid& grid = d.voxels.grid;
   std::vector<signed char> pinned(mesh.faces.size(), 0);
@@ -50,77 +77,69 @@ seam::Clipped clip_model(const cut::Model& model, bool of_a, const cut::Decision
     return near;
   };
   field.crumb = 1.5 * grid.size;
-  field.max_edge = grid.size * (cut == cut::Cut::Thesis ? 0.5 : 1.0);
+  field.max_edge = 0.5 * grid.size;
   return seam::clip(mesh, pinned, field, threads);
 }
 
-/// Everything at one resolution.
+/// The thesis' cut, clip and stitch at one resolution; nothing past the cut where that finds none.
 struct Attempt {
-  cut::Decision decision;
-  seam::Clipped a, b;
-  seam::Joined joined;
-  ComposeReport report;
-  double flaws = 0;  ///< world units: borders that face none, and a voxel for each pair of crossing faces
+  cut::Decision::Outcome outcome;
+  Assembly assembly;
 };
 
-std::unique_ptr<Attempt> attempt(cut::Model& a, cut::Model& b, const Box& volume, int resolution,
-                                 const ComposeOptions& options, Progress& progress) {
-  auto t = std::make_unique<Attempt>();
+Attempt at_resolution(cut::Model& a, cut::Model& b, const Box& volume, int resolution, const ComposeOptions& options,
+                      Progress& progress) {
+  Attempt attempt;
+  Assembly& t = attempt.assembly;
   progress.stage("Finding the minimal cut", 10, 50);
-  t->decision = cut::decide(a, b, volume, resolution, options.cut, options.threads, t->report, progress);
-  if (!t->decision.labels.connected) return t;
-  progress.at(0.9);
-  const cut::Transition transition = make_transition(a, b, t->decision, options.cut);
+  const cut::Decision d = cut::decide(a, b, volume, resolution, options.threads, t.result.report, progress);
+  attempt.outcome = d.outcome;
+  if (d.outcome != cut::Decision::Outcome::Cut) return attempt;
+  const cut::Transition transition(d.voxels, d.labels);
   progress.stage("Clipping", 50, 75);
-  t->a = clip_model(a, true, t->decision, transition, options.cut, options.threads);
+  seam::Clipped clipped_a = clip_by_voxels(a, true, d, transition, options.threads);
   progress.at(0.5);
-  t->b = clip_model(b, false, t->decision, transition, options.cut, options.threads);
-  progress.stage("Stitching and smoothing", 75, 95);
-  t->joined = seam::join_parts(a, t->a, b, t->b);
-  t->report.loops_a = int(t->joined.loops_a.size()), t->report.loops_b = int(t->joined.loops_b.size());
-  if (!options.stitch) return t;
-  const double voxel = t->report.voxel_size;
-  t->flaws = seam::stitch_parts(t->joined, (3 + 2 * t->decision.reach) * voxel, t->report);
-  progress.at(0.6);
-  t->flaws += voxel * double(seam::finish_seam(t->joined, voxel, options.cut, options.smoothing, options.threads));
-  return t;
+  seam::Clipped clipped_b = clip_by_voxels(b, false, d, transition, options.threads);
+  if (options.transition_surface) t.result.transition = cut::transition_surface(d.voxels, d.labels, 0);
+  const double voxel = t.result.report.voxel_size;
+  assemble(a, std::move(clipped_a), b, std::move(clipped_b), {voxel, 3 * voxel}, options, progress, t);
+  return attempt;
 }
 
 /// At the user's resolution; or at the natural one, coarser while the models do
 /// not meet, finer while their constraints share a voxel or the seam has flaws.
-std::unique_ptr<Attempt> best_attempt(cut::Model& a, cut::Model& b, const Box& volume, const ComposeOptions& options,
-                                      Progress& progress) {
-  constexpr int kCoarsest = 24, kFinest = 384, kFiner = 2;
-  const UserError apart(
-      "The models do not touch between what is to be kept of A and of B; move them closer until they overlap, or "
-      "choose a lower Resolution.");
-  if (options.resolution > 0) {
-    auto t = attempt(a, b, volume, options.resolution, options, progress);
-    if (!t->decision.labels.connected) throw apart;
-    return t;
-  }
-  int resolution = cut::natural_resolution(a, b, volume);
-  std::unique_ptr<Attempt> best;
-  for (int finer = 0; finer <= kFiner;) try {
-      auto t = attempt(a, b, volume, resolution, options, progress);
-      if (!t->decision.labels.connected) {
-        if (best) break;
-        if (finer || resolution <= kCoarsest) throw apart;
-        resolution = std::max(kCoarsest, resolution * 2 / 3);
-        continue;
-      }
-      if (!best || t->flaws < best->flaws) best = std::move(t);
-      if (best->flaws == 0 || resolution >= kFinest) break;
-      resolution = std::min(kFinest, resolution * 8 / 5), ++finer;
-    } catch (const cut::SharedVoxel&) {
-      if (best) break;
-      if (finer++ == kFiner || resolution >= kFinest) throw;
-      resolution = std::min(kFinest, resolution * 2);
-    } catch (const UserError&) {
-      if (best) break;  // a finer grid that does not fit: what there is will do
-      throw;
+Assembly by_voxel_cut(cut::Model& a, cut::Model& b, const Box& volume, const ComposeOptions& options,
+                      Progress& progress) {
+  constexpr int kCoarsest = 24, kFinest = 384, kMostFiner = 2;
+  const bool fixed = options.resolution > 0;
+  int resolution = fixed ? options.resolution : cut::natural_resolution(a, b, volume), finer = 0;
+  std::optional<Assembly> best;
+  while (true) {
+    Attempt t = at_resolution(a, b, volume, resolution, options, progress);
+    const bool finest = fixed || finer == kMostFiner || resolution >= kFinest;
+    double step = 1.6;
+    if (t.outcome == cut::Decision::Outcome::Cut) {
+      if (!best || t.assembly.flaws < best->flaws) best = std::move(t.assembly);
+      if (best->flaws == 0 || finest) return std::move(*best);
+    } else if (best) {
+      return std::move(*best);
+    } else if (t.outcome == cut::Decision::Outcome::Apart) {
+      if (fixed || finer > 0 || resolution <= kCoarsest)
+        throw UserError(
+            "The models do not touch between what is to be kept of A and of B; move them closer until they overlap, "
+            "or choose a lower Resolution.");
+      resolution = std::max(kCoarsest, resolution * 2 / 3);
+      continue;
+    } else {
+      if (finest)
+        throw UserError(
+            "What is to be kept of the two models lies in the same voxel; mark parts farther apart, or raise the "
+            "Resolution.");
+      step = 2;
     }
-  return best;
+    resolution = std::min(kFinest, int(resolution * step)), ++finer;
+    if (best && !cut::fits_memory(a, b, volume, resolution)) return std::move(*best);
+  }
 }
 
 void check(const ComposeOptions& o) {
@@ -166,17 +185,11 @@ ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const Co
   const bool turned = enclosed(a.prepared) * enclosed(b.prepared) < 0;
   if (turned) mesh::flip_orientation(b.prepared.mesh);
 
-  const std::unique_ptr<Attempt> best = best_attempt(a, b, volume, options, progress);
+  ComposeResult result = options.cut == cut::Cut::Thesis
+                             ? std::move(by_voxel_cut(a, b, volume, options, progress).result)
+                             : std::move(by_mesh_cut(a, b, volume, options, progress).result);
   progress.stage("Finishing", 95, 100);
-  ComposeResult result;
-  result.report = best->report;
-  result.report.reversed_b = best->report.reversed_b != turned;
-  if (options.transition_surface)
-    result.transition =
-        cut::transition_surface(best->decision.voxels, best->decision.labels, options.cut == cut::Cut::Thesis ? 0 : 6);
-  result.composed = std::move(best->joined.mesh);
-  result.face_from_b = std::move(best->joined.tag);
-  result.clipped_a = std::move(best->a.mesh), result.clipped_b = std::move(best->b.mesh);
+  result.report.reversed_b = result.report.reversed_b != turned;
   result.report.seconds = clock.seconds();
   progress.at(1.0);
   return result;

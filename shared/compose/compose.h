@@ -12,8 +12,8 @@
 namespace parts::compose {
 
 struct ComposeOptions {
-  int resolution = 0;  ///< voxels along the longest side; 0 = from the meshes and the memory
-  cut::Cut cut = cut::Cut::Refined;
+  int resolution = 0;  ///< Thesis: voxels along the longest side; 0 = from the meshes and the memory
+  cut::Cut cut = cut::Cut::Mesh;
   bool stitch = true;
   seam::SeamSmoothing smoothing;
   bool transition_surface = false;  ///< compute ComposeResult::transition
@@ -34,8 +34,8 @@ struct ComposeResult {
   ComposeReport report;
 };
 
-/// Composes two overlapping meshes into one (thesis 3.1-3.2): a minimal cut
-/// through their joint rasterisation finds where they are closest, both are
+/// Composes two overlapping meshes into one (thesis 3.1-3.2): a minimal cut on
+/// the meshes, or through their voxels, finds where they are closest, both are
 /// clipped there, stitched and smoothed. Faces away from the seam are copied
 /// unchanged; every kept face is in the result.
 /// @throws UserError  an empty model or constraint, a constraint outside the

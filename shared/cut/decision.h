@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "parts/base/error.h"
 #include "parts/base/progress.h"
 #include "parts/cut/cut.h"
 #include "parts/cut/labels.h"
@@ -9,25 +8,21 @@
 
 namespace parts::cut {
 
-/// Constraints of both models pass through one voxel: the grid is too coarse.
-struct SharedVoxel : UserError {
-  SharedVoxel()
-      : UserError(
-            "What is to be kept of the two models lies in the same voxel; mark parts farther apart, or raise the "
-            "Resolution.") {}
-};
-
-/// The joint voxels, their labels, and how far apart the models may be.
+/// The joint voxels and their labels.
 struct Decision {
+  enum class Outcome {
+    Cut,         ///< the models meet and are parted
+    Apart,       ///< they do not meet between their constraints: the grid may be too fine
+    SharedVoxel  ///< constraints of both pass through one voxel: the grid is too coarse
+  };
+  Outcome outcome = Outcome::Cut;
   JointVoxels voxels;
   VoxelLabels labels;
-  int reach = 0;
 };
 
-/// Finds the cut at one resolution. Labels that are not `connected` mean that
-/// the models do not meet between their constraints. Fills the report's
-/// figures on voxels and cut. @throws SharedVoxel, UserError
-Decision decide(Model& a, Model& b, const Box& volume, int resolution, Cut cut, int threads, CutReport& report,
+/// Finds the thesis' cut at one resolution. Fills the report's figures on voxels and cut.
+/// @throws UserError  too little memory, a constraint outside the volume
+Decision decide(Model& a, Model& b, const Box& volume, int resolution, int threads, CutReport& report,
                 Progress& progress);
 
 }  // namespace parts::cut

@@ -20,7 +20,7 @@ void label_isolated(const JointVoxels& voxels, const std::vector<int>& group, in
   for (int n = 0; n < int(voxels.size()); ++n)
     if (group[n] >= 0)
       put(asked, n), group_asked.push_back(group[n]);
-    else if (label[n] != VoxelLabels::kSeam)
+    else
       put(decided, n), decided_node.push_back(n);
   if (decided_node.empty()) return;
 

@@ -15,6 +15,10 @@ namespace parts::cut {
 struct FlowGraph : maxflow::Graph<int, std::int64_t, std::int64_t> {
   FlowGraph(int nodes, int edges) : Graph(nodes, edges, [](const char*) { throw std::bad_alloc(); }) {}
 };
+/// The same for edges whose capacities are measured rather than counted.
+struct WideFlowGraph : maxflow::Graph<std::int64_t, std::int64_t, std::int64_t> {
+  WideFlowGraph(int nodes, int edges) : Graph(nodes, edges, [](const char*) { throw std::bad_alloc(); }) {}
+};
 constexpr std::int64_t kUncuttableTerminal = std::int64_t(1) << 60;
 constexpr int kUncuttable = 1 << 30;
 

@@ -6,18 +6,13 @@
 
 namespace parts::cut {
 
-/// The transition surface as the zero set of a field over the voxels: positive
+/// The transition surface of voxel labels as the zero set of a field: positive
 /// where A is kept, negative where B is. Both models are clipped by its sign,
-/// so that their borders lie on one surface and face each other.
+/// along the sides of voxels (thesis 3.2.4).
 class Transition {
  public:
-  /// The labels as they are: borders run along voxel sides (thesis 3.2.4).
-  static Transition along_voxels(const JointVoxels& voxels, const VoxelLabels& labels);
-
-  /// A smooth surface through the seam voxels: the field is harmonic in a band
-  /// around them, pulled to the labels away from them and to zero at the points
-  /// `crossings` where the two meshes truly cross.
-  static Transition smooth(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Vec3>& crossings);
+  /// @param voxels, labels  kept by reference
+  Transition(const JointVoxels& voxels, const VoxelLabels& labels);
 
   /// The field at a point of a model's surface, within the grid.
   double value(const Vec3& p, bool of_a) const;
@@ -25,16 +20,12 @@ class Transition {
   bool near(std::size_t voxel, bool of_a) const { return near_[of_a].has(voxel); }
 
  private:
-  Transition(const JointVoxels& voxels, const VoxelLabels& labels) : voxels_(&voxels), labels_(&labels) {}
-  void solve(const std::vector<Vec3>& crossings);
-  void mark_near();
-  double at(int i, int j, int k, bool of_a, bool& known) const;
+  /// The label of a voxel, 0 where the model is not in it.
+  int at(int i, int j, int k, bool of_a) const;
 
-  const JointVoxels* voxels_;
-  const VoxelLabels* labels_;
-  VoxelSet band_;              ///< voxels with a smoothed value
-  std::vector<double> value_;  ///< per band voxel
-  VoxelSet near_[2];           ///< for B's surface, for A's
+  const JointVoxels& voxels_;
+  const VoxelLabels& labels_;
+  VoxelSet near_[2];  ///< for B's surface, for A's
 };
 
 }  // namespace parts::cut

@@ -45,7 +45,7 @@ void add_outer_pieces(Model& model, bool of_a, const Box& volume, JointVoxels& v
 }
 
 /// About how many bytes a grid over the volume takes: a dozen bit sets, and
-/// what the graph holds a surface voxel, of a sheet dilated by `reach` too.
+/// what the graph holds a surface voxel.
 double memory_estimate(const Model& a, const Model& b, const Grid& grid) {
   const Box box = grid.box();
   const double most = box.diagonal().squaredNorm();  // of a face's area, within the grid
@@ -57,11 +57,19 @@ double memory_estimate(const Model& a, const Model& b, const Grid& grid) {
   return 2.5 * cells + 600.0 * std::min(cells, 2.5 * surface / (grid.size * grid.size));
 }
 
-void check_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
+}  // namespace
+
+bool fits_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
   const Grid grid = Grid::over(volume, resolution);
-  const double bytes = memory_estimate(a, b, grid), have = available_memory();
-  const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
-  if (cells < 9e15 && (have <= 0 || bytes < 0.8 * have)) return;
+  const double have = available_memory(), cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
+  return cells < 9e15 && (have <= 0 || memory_estimate(a, b, grid) < 0.8 * have);
+}
+
+namespace {
+
+void check_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
+  if (fits_memory(a, b, volume, resolution)) return;
+  const double bytes = memory_estimate(a, b, Grid::over(volume, resolution)), have = available_memory();
   int fits = 1, fails = resolution;
   while (fails - fits > 1) {
     const int middle = fits + (fails - fits) / 2;
@@ -80,11 +88,13 @@ Model make_model(const Part& part, const std::string& name) {
     throw UserError("There are no faces in " + name + "; choose a layer that holds a triangle mesh.");
   if (part.keep.size() != part.mesh.faces.size() || !any(part.keep))
     throw UserError("Nothing of " + name + " is marked to be kept; select faces on it, or give a box or a point.");
-  Model m{name, mesh::prepare(part.mesh), {}, {}};
+  Model m{name, mesh::prepare(part.mesh), {}, {}, {}};
   if (m.prepared.mesh.faces.empty())
     throw UserError("There is no usable face in " + name +
                     " (all have non-finite or coinciding corners); clean the mesh first.");
   for (int f : m.prepared.source_face) m.keep.push_back(part.keep[f]);
+  if (!part.drop.empty())
+    for (int f : m.prepared.source_face) m.drop.push_back(part.drop[f] && !part.keep[f]);
   if (!any(m.keep))
     throw UserError("What is marked to be kept of " + name +
                     " has no usable face (non-finite or coinciding corners); clean the mesh or mark more.");
@@ -148,66 +158,6 @@ JointVoxels joint_voxels(Model& a, Model& b, const Box& volume, int resolution, 
   add_outer_pieces(a, true, volume, voxels);
   add_outer_pieces(b, false, volume, voxels);
   return voxels;
-}
-
-std::vector<Eigen::Vector3f> voxel_normals(const Mesh& mesh, const JointVoxels& voxels) {
-  std::vector<Eigen::Vector3f> sum(voxels.size(), Eigen::Vector3f::Zero());
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 n = (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0)).normalized();
-    if (!n.allFinite()) continue;
-    for_each_voxel(voxels.grid, mesh, f, [&](std::size_t v) { sum[voxels.set.node(v)] += n.cast<float>(); });
-  }
-  return sum;
-}
-
-double double_layer(const JointVoxels& voxels, const VoxelLabels& labels, const std::vector<Eigen::Vector3f>& normal_a,
-                    const std::vector<Eigen::Vector3f>& normal_b) {
-  constexpr int kNear = 3, kSeamZone = 5, kBlock = 8;
-  const Grid& grid = voxels.grid;
-  const auto any_around = [&](int node, int reach, const auto& test) {
-    const std::array<int, 3> c = grid.cell(voxels.cells[node]);
-    for (int k = -reach; k <= reach; ++k)
-      for (int j = -reach; j <= reach; ++j)
-        for (int i = -reach; i <= reach; ++i)
-          if (const int m = voxels.at(c[0] + i, c[1] + j, c[2] + k); m >= 0 && test(m)) return true;
-    return false;
-  };
-  const auto kept = [&](int n, int has, int label) { return (voxels.flags[n] & has) && labels.label[n] == label; };
-  // Most of A is far from all that is kept of B: blocks of voxels say so at once.
-  Grid blocks;
-  for (int d = 0; d < 3; ++d) blocks.dims[d] = (grid.dims[d] - 1) / kBlock + 1;
-  VoxelSet holds_b(blocks.count());
-  long doubled = 0, kept_a = 0, kept_b = 0;
-  for (int n = 0; n < int(voxels.size()); ++n)
-    if (kept(n, kHasB, VoxelLabels::kB)) {
-      const std::array<int, 3> c = grid.cell(voxels.cells[n]);
-      holds_b.add(blocks.index(c[0] / kBlock, c[1] / kBlock, c[2] / kBlock));
-      ++kept_b;
-    }
-  const auto block_near = [&](int node) {
-    std::array<int, 3> lo, hi = grid.cell(voxels.cells[node]);
-    for (int d = 0; d < 3; ++d) {
-      lo[d] = std::max(0, hi[d] - kNear) / kBlock;
-      hi[d] = std::min(grid.dims[d] - 1, hi[d] + kNear) / kBlock;
-    }
-    for (int k = lo[2]; k <= hi[2]; ++k)
-      for (int j = lo[1]; j <= hi[1]; ++j)
-        for (int i = lo[0]; i <= hi[0]; ++i)
-          if (holds_b.has(blocks.index(i, j, k))) return true;
-    return false;
-  };
-  for (int n = 0; n < int(voxels.size()); ++n) {
-    if (!kept(n, kHasA, VoxelLabels::kA)) continue;
-    ++kept_a;
-    if (!block_near(n)) continue;
-    const Eigen::Vector3f a = normal_a[n].normalized();
-    const auto parallel = [&](int m) {
-      return kept(m, kHasB, VoxelLabels::kB) && a.dot(normal_b[m].normalized()) > 0.7f;
-    };
-    doubled += any_around(n, kNear, parallel) &&
-               !any_around(n, kSeamZone, [&](int m) { return labels.label[m] == VoxelLabels::kSeam; });
-  }
-  return std::min(1.0, double(doubled) / double(std::max(1L, std::min(kept_a, kept_b))));
 }
 
 }  // namespace parts::cut

@@ -122,7 +122,7 @@ void join(const Cleared& scan, const seam::Clipped& patch, const PatchOptions& c
   seam::Joined j = side_by_side(scan.mesh, patch, rims);
   seam::SeamReport report;
   seam::stitch_parts(j, cut.max_gap, report);
-  out.crossings = seam::finish_seam(j, cut.edge, cut::Cut::Refined, options.smoothing, options.threads);
+  out.crossings = seam::finish_seam(j, cut.edge, cut::Cut::Mesh, options.smoothing, options.threads);
   drop_unjoined(j.mesh, j.tag);
   out.source = sources(j.tag, scan.stays);
   mesh::weld_steps(j.mesh, out.source);

@@ -17,11 +17,11 @@ struct RestoreOptions {
   double constraint_distance = 0.3;  ///< share of the region's half size (flaws) or of the largest distance of the
                                      ///< model from the scan (holes), 0 to 1
   FittingOptions fitting;
-  int tries = 5;                     ///< of so many models the first that is accepted is the base
-  cut::Cut cut = cut::Cut::Refined;  ///< Thesis: compose() with the constraints of Fig. 7
-  int resolution = 0;                ///< of the thesis' cut
-  seam::SeamSmoothing smoothing;     ///< distance 0 = two edges of the rim
-  bool match_color = true;           ///< the patch's vertex colours go on from the scan's
+  int tries = 5;                  ///< of so many models the first that is accepted is the base
+  cut::Cut cut = cut::Cut::Mesh;  ///< Thesis: compose() with the constraints of Fig. 7
+  int resolution = 0;             ///< of the thesis' cut
+  seam::SeamSmoothing smoothing;  ///< distance 0 = two edges of the rim
+  bool match_color = true;        ///< the patch's vertex colours go on from the scan's
 };
 
 /// What mending one region measured.

@@ -86,7 +86,7 @@ Restored thesis_cut(const Scan& scan, const Region& region, const Fit& fit, cons
   if (after.boundary_loops > wanted || after.nonmanifold_edges > before.nonmanifold_edges ||
       after.components > before.components)
     throw UserError(
-        "The cut of the thesis does not close the surface here; choose the cut Refined, or another Resolution.");
+        "The cut of the thesis does not close the surface here; choose the cut Mesh, or another Resolution.");
   Restored out;
   out.report.rims_joined = composed.report.loops_joined, out.report.borders_capped = composed.report.loops_capped;
   out.report.seam_length = composed.report.seam_length, out.report.seam_gap = composed.report.seam_gap;

@@ -49,6 +49,29 @@ int add_vertex_between(Mesh& m, int i, int j, double t) {
   return m.vertex_count() - 1;
 }
 
+int add_vertex_within(Mesh& m, int face, const Vec3& l) {
+  const Triangle t = m.faces[face];
+  m.vertices.push_back(l[0] * m.vertices[t[0]] + l[1] * m.vertices[t[1]] + l[2] * m.vertices[t[2]]);
+  const Eigen::Vector3f w = l.cast<float>();
+  if (!m.vertex_normal.empty())
+    m.vertex_normal.push_back(
+        (w[0] * m.vertex_normal[t[0]] + w[1] * m.vertex_normal[t[1]] + w[2] * m.vertex_normal[t[2]]).normalized());
+  if (!m.vertex_color.empty()) {
+    Color c;
+    for (int k = 0; k < 4; ++k)
+      c[k] = std::uint8_t(std::clamp(
+          l[0] * m.vertex_color[t[0]][k] + l[1] * m.vertex_color[t[1]][k] + l[2] * m.vertex_color[t[2]][k] + 0.5, 0.0,
+          255.0));
+    m.vertex_color.push_back(c);
+  }
+  if (!m.vertex_quality.empty())
+    m.vertex_quality.push_back(w[0] * m.vertex_quality[t[0]] + w[1] * m.vertex_quality[t[1]] +
+                               w[2] * m.vertex_quality[t[2]]);
+  if (!m.vertex_selected.empty())
+    m.vertex_selected.push_back(m.vertex_selected[t[0]] && m.vertex_selected[t[1]] && m.vertex_selected[t[2]]);
+  return m.vertex_count() - 1;
+}
+
 int add_face_within(Mesh& m, int parent, const Triangle& vertices, const std::array<Vec3, 3>& barycentric) {
   m.faces.push_back(vertices);
   if (!m.face_color.empty()) m.face_color.push_back(Color(m.face_color[parent]));

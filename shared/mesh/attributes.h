@@ -10,6 +10,9 @@ namespace parts::mesh {
 /// Adds the point (1 - t) v_i + t v_j. @return its index
 int add_vertex_between(Mesh& mesh, int i, int j, double t);
 
+/// Adds the point of a face at barycentric coordinates. @return its index
+int add_vertex_within(Mesh& mesh, int face, const Vec3& barycentric);
+
 /// Adds a face that lies within face `parent`; corner k of it is at the
 /// barycentric coordinates barycentric[k] of the parent. @return its index
 int add_face_within(Mesh& mesh, int parent, const Triangle& vertices, const std::array<Vec3, 3>& barycentric);

@@ -40,7 +40,7 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
 /// @return the length of borders that faced none, world units
 double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 
-/// Removes the seam's slivers, evens it (Refined), lets the surfaces give way at
+/// Removes the seam's slivers, evens it (Mesh), lets the surfaces give way at
 /// it (if asked to), smooths it, parts faces that cross, and mends the normals
 /// around it.
 /// @return pairs of faces at the seam that still cross

@@ -46,7 +46,7 @@ void small_meshes() {
   Table table("Two meshes of 20,000 faces at the default resolution",
               {"Scene", "Cut", "Grid", "Cut ms", "Wall s", "Processor s", "Loops joined, open", "< 0.5 s"});
   for (const Scene& scene : {two_spheres(20000), two_tubes(20000), two_tori(20000), two_creatures(20000)})
-    for (const cut::Cut cut : {cut::Cut::Refined, cut::Cut::Thesis}) {
+    for (const cut::Cut cut : {cut::Cut::Mesh, cut::Cut::Thesis}) {
       const Child c = composed(scene, 0, cut, false);
       const char* name = cut == cut::Cut::Thesis ? "Thesis" : "Refined";
       if (!c.ended) {
@@ -66,7 +66,7 @@ void large_meshes() {
   for (const Scene& scene : {two_spheres(500000), two_creatures(500000)}) {
     double before = 0, voxels_before = 0;
     for (const int resolution : {128, 256, 512}) {
-      const Child c = composed(scene, resolution, cut::Cut::Refined, true);
+      const Child c = composed(scene, resolution, cut::Cut::Mesh, true);
       if (!c.ended) {
         table.row({scene.name, std::to_string(resolution), "failed"});
         continue;

@@ -58,7 +58,7 @@ int main() {
       fit(scene, Vec3(entry.dims[0] - 2, entry.dims[1] - 2, entry.dims[2] - 2));
       long voxels = 0;
       const Times thesis = cut_times(scene, entry, cut::Cut::Thesis, voxels);
-      const Times refined = cut_times(scene, entry, cut::Cut::Refined, voxels);
+      const Times refined = cut_times(scene, entry, cut::Cut::Mesh, voxels);
       worst = std::max({worst, thesis.cpu, refined.cpu});
       const char* gap = cells[0].empty() ? "" : " / ";
       const double shown[4] = {thesis.cpu, thesis.wall, refined.cpu, refined.wall};

@@ -90,7 +90,7 @@ cut::Part random_part(Random& random) {
 compose::ComposeOptions random_options(Random& random) {
   compose::ComposeOptions o;
   o.resolution = random.below(4) ? 1 + random.below(40) : 0;
-  o.cut = random.below(2) ? cut::Cut::Thesis : cut::Cut::Refined;
+  o.cut = random.below(2) ? cut::Cut::Thesis : cut::Cut::Mesh;
   o.stitch = random.below(5) > 0;
   o.transition_surface = random.below(2);
   o.threads = 1 + random.below(3);

@@ -175,7 +175,7 @@ TEST(ComposeNasty, CoincidentCopies) {
   const Mesh mesh = noisy_sphere(Vec3::Zero(), 1, 4, 0.4, 3);
   const cut::Part a{mesh, faces_where(mesh, [](const Vec3& c) { return c.x() < -0.5; })};
   const cut::Part b{mesh, faces_where(mesh, [](const Vec3& c) { return c.x() > 0.5; })};
-  for (const cut::Cut cut : {cut::Cut::Refined, cut::Cut::Thesis}) {
+  for (const cut::Cut cut : {cut::Cut::Mesh, cut::Cut::Thesis}) {
     compose::ComposeOptions options;
     options.cut = cut;
     const compose::ComposeResult r = compose_quietly(a, b, options);

@@ -42,7 +42,7 @@ void compose_random_scenes(cut::Cut cut, unsigned from, unsigned to, Tally& tall
 
 TEST(ComposeRandom, RefinedKeepsItsPromises) {
   Tally tally;
-  compose_random_scenes(cut::Cut::Refined, 0, 70, tally);
+  compose_random_scenes(cut::Cut::Mesh, 0, 70, tally);
   RecordProperty("without_new_self_intersections", tally.clean);
   EXPECT_LE(tally.refused, 2);
   // Scenes are turned at random; the cut cannot join all of them without a fold.
@@ -61,7 +61,7 @@ TEST(ComposeRandom, TheSameBytesForAnyNumberOfThreads) {
   for (unsigned seed = 200; seed < 206; ++seed) {
     const Scene scene = random_scene(seed);
     compose::ComposeOptions options;
-    options.cut = seed % 2 ? cut::Cut::Thesis : cut::Cut::Refined;
+    options.cut = seed % 2 ? cut::Cut::Thesis : cut::Cut::Mesh;
     options.transition_surface = true;
     std::vector<compose::ComposeResult> results;
     for (const int threads : {1, 2, 8}) {

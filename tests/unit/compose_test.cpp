@@ -35,7 +35,7 @@ TEST(Compose, ReversedConstraintsGiveTheOtherPieces) {
   auto [a, b] = two_spheres(4);
   a.keep = faces_where(a.mesh, [](const Vec3& c) { return c.x() > 0.9; });
   b.keep = faces_where(b.mesh, [](const Vec3& c) { return c.x() < 0.1; });
-  for (const cut::Cut cut : {cut::Cut::Refined, cut::Cut::Thesis}) {
+  for (const cut::Cut cut : {cut::Cut::Mesh, cut::Cut::Thesis}) {
     compose::ComposeOptions options;
     options.cut = cut;
     const compose::ComposeResult r = compose_quietly(a, b, options);
@@ -107,7 +107,7 @@ TEST(Compose, NothingIsCutOutsideTheVolume) {
   compose::ComposeOptions options;
   options.volume = Box(Vec3(-2.5, -1, -1), Vec3(0.5, 1.5, 1));
   options.resolution = 60;
-  for (const cut::Cut cut : {cut::Cut::Refined, cut::Cut::Thesis}) {
+  for (const cut::Cut cut : {cut::Cut::Mesh, cut::Cut::Thesis}) {
     options.cut = cut;
     const compose::ComposeResult r = compose_quietly(a, b, options);
     EXPECT_EQ(missing_faces(r, a, b), 0);

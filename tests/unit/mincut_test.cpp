@@ -34,8 +34,7 @@ Mesh small_shape(Random& random) {
 
 /// Two models in a grid of about n³: a third of them near-coincident copies, a
 /// third cut by a volume that leaves surface outside; constraints anywhere.
-cut::JointVoxels random_voxels(unsigned seed, int n, std::vector<Eigen::Vector3f>* normal_a = nullptr,
-                               std::vector<Eigen::Vector3f>* normal_b = nullptr) {
+cut::JointVoxels random_voxels(unsigned seed, int n) {
   Random random(seed);
   for (;;) try {
       const Mesh shape = small_shape(random);
@@ -61,8 +60,6 @@ cut::JointVoxels random_voxels(unsigned seed, int n, std::vector<Eigen::Vector3f
       cut::JointVoxels voxels = cut::joint_voxels(ma, mb, volume, n, 1);
       for (std::uint8_t& flags : voxels.flags)
         if ((flags & cut::kKeepA) && (flags & cut::kKeepB)) flags &= std::uint8_t(~cut::kKeepB);
-      if (normal_a) *normal_a = cut::voxel_normals(ma.prepared.mesh, voxels);
-      if (normal_b) *normal_b = cut::voxel_normals(mb.prepared.mesh, voxels);
       return voxels;
     } catch (const UserError&) {  // the volume misses something: another try
     }
@@ -204,113 +201,6 @@ TEST(ThesisCut, CountsAsTheEquationsDo) {
   cut::VoxelSet far_b(6);
   far_b.add(4), far_b.add(5);
   EXPECT_FALSE(cut::thesis_cut(cut::join(grid, short_a, far_b, keep_a, keep_b)).connected);
-}
-
-/// The refined cut's graph as its definition gives it, nothing contracted: every
-/// place is split in two, and only those that both models come near can be cut.
-double refined_minimum(const cut::JointVoxels& voxels, int reach) {
-  const cut::Grid& g = voxels.grid;
-  const int n = int(g.count()), pieces = int(voxels.outer.size());
-  std::vector<int> near(n, 0);
-  for (int p = 0; p < voxels.size(); ++p) {
-    const auto c = g.cell(voxels.cells[p]);
-    for (int k = c[2] - reach; k <= c[2] + reach; ++k)
-      for (int j = c[1] - reach; j <= c[1] + reach; ++j)
-        for (int i = c[0] - reach; i <= c[0] + reach; ++i)
-          if (g.inside(i, j, k)) near[g.index(i, j, k)] |= voxels.flags[p] & 3;
-  }
-  const auto place = [&](int v) { return near[v] == 3 || voxels.set.node(std::size_t(v)) >= 0; };
-  const auto shared = [&](int v) { return near[v] == 3; };
-  std::vector<int> depth(n, 8);
-  const auto for_each_pair = [&](const auto& visit) {
-    for_each_full_edge(voxels, [&](std::size_t v, std::size_t u, int) {
-      if (place(int(v)) && place(int(u))) visit(int(v), int(u));
-    });
-  };
-  for_each_pair([&](int v, int u) {
-    if (shared(v) && !shared(u)) depth[v] = 0;
-    if (shared(u) && !shared(v)) depth[u] = 0;
-  });
-  for (int round = 0; round < 8; ++round)
-    for_each_pair([&](int v, int u) {
-      if (shared(v) && shared(u))
-        depth[v] = std::min(depth[v], depth[u] + 1), depth[u] = std::min(depth[u], depth[v] + 1);
-    });
-
-  WideGraph graph(2 * n + pieces, 8 * n);
-  graph.add_node(2 * n + pieces);
-  for (int v = 0; v < n; ++v) {
-    if (!place(v)) continue;
-    const std::int64_t weight = shared(v) ? int(32 * (1 + 1. / (1 + depth[v]))) : kForbidden;
-    graph.add_edge(2 * v, 2 * v + 1, weight, 0);
-    const int p = voxels.set.node(std::size_t(v)), flags = p < 0 ? 0 : voxels.flags[p];
-    if (flags & cut::kKeepA) graph.add_tweights(2 * v, kForbidden, 0);
-    if (flags & cut::kKeepB) graph.add_tweights(2 * v + 1, 0, kForbidden);
-  }
-  for_each_pair([&](int v, int u) {
-    if (!shared(v) && !shared(u) && near[v] != near[u] &&
-        (voxels.flags[voxels.set.node(v)] & 3) != (voxels.flags[voxels.set.node(u)] & 3))
-      return;
-    graph.add_edge(2 * v + 1, 2 * u, kForbidden, 0);
-    graph.add_edge(2 * u + 1, 2 * v, kForbidden, 0);
-  });
-  for (int k = 0; k < pieces; ++k) {
-    const cut::OuterPiece& piece = voxels.outer[k];
-    if (piece.keep) graph.add_tweights(2 * n + k, piece.of_a ? kForbidden : 0, piece.of_a ? 0 : kForbidden);
-    for (std::size_t v : piece.voxels) {
-      if (!shared(int(v)) && (voxels.flags[voxels.set.node(v)] & 3) != (piece.of_a ? cut::kHasA : cut::kHasB)) continue;
-      graph.add_edge(2 * n + k, int(2 * v), kForbidden, 0);
-      graph.add_edge(int(2 * v + 1), 2 * n + k, kForbidden, 0);
-    }
-  }
-  return double(graph.maxflow()) / 64;
-}
-
-TEST(RefinedCut, CostsTheMinimumOfTheGraphThatIsNotContracted) {
-  // Without normals no sheets are tied, and depth alone makes the weights.
-  for (unsigned seed = 0; seed < 200; ++seed) {
-    const cut::JointVoxels voxels = random_voxels(seed + 500, 8 + int(seed % 15));
-    const std::vector<Eigen::Vector3f> none(voxels.size(), Eigen::Vector3f::Zero());
-    const int reach = int(seed % 3);
-    const cut::VoxelLabels cut = cut::refined_cut(voxels, none, none, {reach});
-    EXPECT_DOUBLE_EQ(cut.cost, refined_minimum(voxels, reach)) << "scene " << seed << " reach " << reach;
-    EXPECT_EQ(cut.connected, cut.cost > 0);
-    expect_constraints_hold(voxels, cut);
-  }
-}
-
-TEST(RefinedCut, SeamVoxelsPartTheLabels) {
-  for (unsigned seed = 0; seed < 60; ++seed) {
-    std::vector<Eigen::Vector3f> normal_a, normal_b;
-    const cut::JointVoxels voxels = random_voxels(seed + 900, 10 + int(seed % 15), &normal_a, &normal_b);
-    const cut::VoxelLabels cut = cut::refined_cut(voxels, normal_a, normal_b, {0});
-    expect_constraints_hold(voxels, cut);
-    if (!cut.connected) continue;
-    for (int p = 0; p < voxels.size(); ++p)
-      EXPECT_TRUE(cut.label[p] != cut::VoxelLabels::kSeam || voxels.both(p)) << "a seam where one model is alone";
-    cut::for_each_edge(voxels.grid, voxels.set, voxels.cells, [&](int p, int q) {
-      if (cut.label[p] * cut.label[q] >= 0) return;
-      // Sheets of one model each may touch; no other change goes without a seam.
-      EXPECT_TRUE(!voxels.both(p) && !voxels.both(q) && (voxels.flags[p] & 3) != (voxels.flags[q] & 3));
-    });
-  }
-}
-
-TEST(RefinedCut, DoesNotAmputate) {
-  // Two tori side by side: eq. 1-2 snip a ring around A's constraint, the refined
-  // cut keeps A up to where the models meet.
-  cut::Part a{torus({-0.75, 0, 0}, 0.6, 0.2), {}}, b{torus({0.75, 0, 0}, 0.6, 0.2), {}};
-  a.keep = faces_where(a.mesh, [](const Vec3& c) { return c.x() < -1.4; });
-  b.keep = faces_where(b.mesh, [](const Vec3& c) { return c.x() > 1.4; });
-  cut::Model ma = cut::make_model(a, "A"), mb = cut::make_model(b, "B");
-  const cut::JointVoxels voxels = cut::joint_voxels(ma, mb, cut::transition_volume(ma, mb, Box()), 64, 1);
-  const auto na = cut::voxel_normals(ma.prepared.mesh, voxels), nb = cut::voxel_normals(mb.prepared.mesh, voxels);
-  const cut::VoxelLabels cut = cut::refined_cut(voxels, na, nb, {});
-  ASSERT_TRUE(cut.connected);
-  long kept = 0, all = 0;
-  for (int p = 0; p < voxels.size(); ++p)
-    if ((voxels.flags[p] & 3) == cut::kHasA) ++all, kept += cut.label[p] == cut::VoxelLabels::kA;
-  EXPECT_GT(double(kept), 0.8 * double(all));
 }
 
 TEST(LabelIsolated, TakesTheNearestDecidedLabel) {

@@ -50,7 +50,7 @@ TEST(SeamManifold, NoEdgeAndNoVertexThatTheInputsDidNotHave) {
     EXPECT_EQ(raw.nonmanifold_edges, 0) << trial << "\n" << mesh::to_string(raw);
     EXPECT_EQ(raw.inconsistent_edges, 0) << trial;
     seam::Joined finished = s.joined;
-    seam::finish_seam(finished, 0.1, cut::Cut::Refined, {}, 1);
+    seam::finish_seam(finished, 0.1, cut::Cut::Mesh, {}, 1);
     const mesh::MeshCheck c = welded_check(finished.mesh);
     EXPECT_EQ(c.nonmanifold_edges, 0) << trial << "\n" << mesh::to_string(c);
     EXPECT_EQ(c.nonmanifold_vertices, 0) << trial << "\n" << mesh::to_string(c);

@@ -92,7 +92,7 @@ inline Stitched stitched(const cut::Model& a, const seam::Clipped& ca, const cut
   Stitched s;
   s.joined = seam::join_parts(a, ca, b, cb);
   s.unmatched = seam::stitch_parts(s.joined, max_gap, s.report);
-  if (finish > 0) seam::finish_seam(s.joined, finish, cut::Cut::Refined, smoothing, 1);
+  if (finish > 0) seam::finish_seam(s.joined, finish, cut::Cut::Mesh, smoothing, 1);
   return s;
 }
 

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parts/cut/mesh_cut.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "parts/base/disjoint_sets.h"
+#include "parts/base/error.h"
+#include "parts/cut/seam_values.h"
+#include "parts/mesh/edges.h"
+#include "parts/mesh/loops.h"
+
+namespace parts::cut {
+namespace {
+
+// In lengths of S.
+constexpr double kCoarseEdge = 0.08, kFineEdge = 0.03;  // the longest edges of the work meshes
+constexpr double kCoarseReach = 0.02;                   // the first reach
+constexpr double kZone = 0.1;                           // how near the other model, or the coarse seam, they are split
+
+std::uint64_t edge_key(int a, int b) {
+  return std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));
+}
+
+/// Everything that the coarse and the fine cut have in common.
+class MeshCutter {
+ public:
+  MeshCutter(const Model& a, const Model& b, const Box& volume, int threads)
+      : model_{&a, &b},
+        volume_(volume),
+        threads_(threads),
+        tree_{spatial::FaceTree(mesh(0)), spatial::FaceTree(mesh(1))},
+        curve_(find_crossings(mesh(0), tree_[0], mesh(1), tree_[1])) {
+    problem_.scale = std::min(rms_size(mesh(0)), rms_size(mesh(1)));
+    for (int x : {0, 1}) {
+      const std::vector<char>& keep = model_[x]->keep;
+      marks_[x].assign(mesh(x).faces.size(), 0);
+      still_[x].assign(mesh(x).vertices.size(), 0);
+      for (int f = 0; f < mesh(x).face_count(); ++f) {
+        if (keep[f])
+          marks_[x][f] = x ? kOfB : kOfA;
+        else if (!model_[x]->drop.empty() && model_[x]->drop[f])
+          marks_[x][f] = x ? kOfA : kOfB;
+        if (keep[f] || !volume_.contains(mesh(x).face_box(f)))
+          for (int v : mesh(x).faces[f]) still_[x][v] = 1;
+      }
+    }
+  }
+
+  bool cut_coarsely() {
+    std::vector<char> near[2];
+    for (int x : {0, 1}) near[x] = faces_near_other(x);
+    prepare(marks_, near, kCoarseEdge);
+    labels_ = choose_labels(problem_, kCoarseReach * scale(), 1, threads_);
+    return labels_.found;
+  }
+
+  /// Again around the seam found, with shorter edges. Leaves things as they are where that finds none.
+  void cut_finely() {
+    std::vector<Territory> forced[2];
+    std::vector<char> open[2];
+    lock_far_faces(forced, open);
+    MeshProblem coarse = std::move(problem_);
+    MeshLabels labels = std::move(labels_);
+    std::vector<SplitPoint> points[2] = {std::move(points_[0]), std::move(points_[1])};
+    problem_ = MeshProblem();
+    problem_.scale = coarse.scale;
+    prepare(forced, open, kFineEdge);
+    labels_ = choose_labels(problem_, std::max(kCoarseReach * scale(), labels.reach / 2), 0, threads_);
+    if (labels_.found) return;
+    problem_ = std::move(coarse), labels_ = std::move(labels);
+    for (int x : {0, 1}) points_[x] = std::move(points[x]);
+  }
+
+  MeshCut borders() {
+    const SeamValues values = smooth_values(*model_[0], *model_[1], problem_, labels_, curve_, kFineEdge * scale());
+    MeshCut cut;
+    cut.edge = values.edge, cut.gap = values.gap;
+    for (int x : {0, 1}) cut.border[x] = smooth_border(x, values), cut.loops[x] = label_loops(x);
+    return cut;
+  }
+
+  MeshBorder raw_border(int x) const;
+
+  void report(CutReport& r) const {
+    r.scale = scale(), r.reach = labels_.reach;
+    r.crossing_segments = long(curve_.segments.size()), r.broken_ties = labels_.broken;
+    r.cut_cost = labels_.objective;
+  }
+
+ private:
+  const Mesh& mesh(int x) const { return model_[x]->prepared.mesh; }
+  double scale() const { return problem_.scale; }
+
+  std::vector<char> faces_near_other(int x) const {
+    std::vector<char> near(mesh(x).faces.size(), 0);
+    for (int f = 0; f < mesh(x).face_count(); ++f) {
+      const double longest = longest_edge(x, f);
+      near[f] = !marks_[x][f] && longest > kCoarseEdge * scale() &&
+                tree_[1 - x].nearest(mesh(x).center(f), kZone * scale() + 0.6 * longest).face >= 0;
+    }
+    return near;
+  }
+
+  double longest_edge(int x, int f) const {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (mesh(x).corner(f, k) - mesh(x).corner(f, (k + 1) % 3)).norm());
+    return longest;
+  }
+
+  /// Makes the work meshes: the models split along the curve, the flagged faces down to an edge.
+  void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge) {
+    for (int x : {0, 1}) {
+      points_[x] = split_points(curve_, mesh(x), x == 0);
+      add_even_points(mesh(x), split[x], still_[x], edge * scale(), points_[x]);
+      std::vector<SplitSegment> segments;
+      for (const CrossingSegment& s : curve_.segments) segments.push_back({x ? s.face_b : s.face_a, s.ends});
+      problem_.side[x] = make_work_mesh(*model_[x], volume_, forced[x], points_[x], segments);
+    }
+    find_ties();
+  }
+
+  /// The crossing segments that are edges of both work meshes.
+  void find_ties() {
+    std::unordered_map<std::uint64_t, int> edge_at[2];
+    for (int x : {0, 1})
+      for (std::size_t e = 0; e < problem_.side[x].edges.size(); ++e)
+        if (const WorkMesh::Edge& edge = problem_.side[x].edges[e]; edge.low >= mesh(x).vertex_count())
+          edge_at[x][edge_key(edge.low, edge.high)] = int(e);
+    for (int s = 0; s < int(curve_.segments.size()); ++s) {
+      WorkMesh::Edge* edge[2];
+      bool good = true;
+      for (int x : {0, 1}) {
+        WorkMesh& w = problem_.side[x];
+        const int p = w.vertex_of[curve_.segments[s].ends[0]], q = w.vertex_of[curve_.segments[s].ends[1]];
+        const auto it = edge_at[x].find(edge_key(p, q));
+        good = good && p != q && it != edge_at[x].end();
+        edge[x] = good ? &w.edges[it->second] : nullptr;
+        good = good && edge[x]->end_face - edge[x]->first_face == 2;
+      }
+      if (good) problem_.ties.push_back(tie(s, *edge[0], *edge[1]));
+    }
+  }
+
+  Tie tie(int s, WorkMesh::Edge& edge_a, WorkMesh::Edge& edge_b) const {
+    const CrossingSegment& segment = curve_.segments[s];
+    const Vec3 normal_a = mesh(0).normal(segment.face_a), normal_b = mesh(1).normal(segment.face_b);
+    const Vec3 &from = curve_.points[segment.ends[0]].position, &to = curve_.points[segment.ends[1]].position;
+    // Of an edge's two faces, the one in front of the other model's face first.
+    const auto sides = [&](const WorkMesh& w, const WorkMesh::Edge& e, const Vec3& normal) {
+      std::array<int, 2> face{w.edge_faces[e.first_face], w.edge_faces[e.first_face + 1]};
+      const auto height = [&](int f) {
+        for (int v : w.mesh.faces[f])
+          if (v != e.low && v != e.high) return normal.dot(w.mesh.vertices[v] - from);
+        return 0.0;
+      };
+      if (height(face[0]) <= height(face[1])) std::swap(face[0], face[1]);
+      return face;
+    };
+    const auto [a_outside, a_inside] = sides(problem_.side[0], edge_a, normal_b);
+    const auto [b_outside, b_inside] = sides(problem_.side[1], edge_b, normal_a);
+    Tie t{s, a_outside, a_inside, b_outside, b_inside, (to - from).norm(), 1 - normal_a.dot(normal_b), false};
+    edge_a.turn = edge_b.turn = std::max(0.0, t.turn);
+    const Vec3 middle = 0.5 * (from + to);
+    t.hidden = inside_itself(0, segment.face_a, middle, normal_a) || inside_itself(1, segment.face_b, middle, normal_b);
+    return t;
+  }
+
+  /// Whether a point on a closed model lies inside another part of it.
+  bool inside_itself(int x, int face, const Vec3& p, const Vec3& normal) const {
+    const mesh::Prepared& m = model_[x]->prepared;
+    const Vec3 aslant(1.3e-3, -2.1e-3, 0.7e-3);  // past edges that the normal would meet
+    return m.closed[m.component[face]] && tree_[x].winding(p, (normal + aslant).normalized(), 1e-5 * scale()) != 0;
+  }
+
+  /// Faces far from the seam keep their label; the others are open again.
+  void lock_far_faces(std::vector<Territory> (&forced)[2], std::vector<char> (&open)[2]) const {
+    Mesh seam;  // its edges, as faces without area
+    double edges = 0;
+    long count = 0;
+    for (int x : {0, 1}) {
+      const WorkMesh& w = problem_.side[x];
+      for (const WorkMesh::Edge& e : w.edges) {
+        if (!w.cut(e, labels_.label[x])) continue;
+        const int v = seam.vertex_count();
+        seam.vertices.push_back(w.mesh.vertices[e.low]), seam.vertices.push_back(w.mesh.vertices[e.high]);
+        seam.faces.push_back({v, v + 1, v + 1});
+        for (int k = e.first_face; k < e.end_face; ++k, ++count)
+          edges += std::min(longest_edge(x, w.source[w.edge_faces[k]]), kCoarseEdge * scale());
+      }
+    }
+    const spatial::FaceTree tree(seam);
+    const double zone = std::max({kZone * scale(), 1.5 * labels_.reach, 2 * edges / double(std::max(1L, count))});
+    for (int x : {0, 1}) {
+      const WorkMesh& w = problem_.side[x];
+      forced[x] = marks_[x];
+      open[x].assign(mesh(x).faces.size(), 0);
+      std::vector<Territory> label(mesh(x).faces.size(), 0);
+      for (int f = 0; f < w.mesh.face_count(); ++f) label[w.source[f]] = labels_.label[x][f];
+      for (int f = 0; f < mesh(x).face_count(); ++f) {
+        if (forced[x][f]) continue;
+        const Vec3 center = mesh(x).center(f);
+        double radius = 0;
+        for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh(x).corner(f, k) - center).norm());
+        open[x][f] = tree.nearest(center, zone + radius).face >= 0;
+        if (!open[x][f]) forced[x][f] = label[f];
+      }
+    }
+  }
+
+  /// The points on and in the model's flagged faces.
+  std::vector<char> points_of(int x, const std::vector<char>& faces) const {
+    std::unordered_set<std::uint64_t> edges;
+    for (int f = 0; f < mesh(x).face_count(); ++f)
+      for (int k = 0; faces[f] && k < 3; ++k)
+        edges.insert(edge_key(mesh(x).faces[f][k], mesh(x).faces[f][(k + 1) % 3]));
+    std::vector<char> used(points_[x].size(), 0);
+    for (std::size_t p = 0; p < used.size(); ++p) {
+      const SplitPoint& point = points_[x][p];
+      used[p] = point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0;
+    }
+    return used;
+  }
+
+  /// The label of the work mesh's part of a face that is nearest to a point.
+  class LabelOfPart {
+   public:
+    LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces)
+        : w_(w), label_(label) {
+      for (int f = 0; f < w.mesh.face_count(); ++f)
+        if (faces[w.source[f]]) parts_[w.source[f]].push_back(f);
+    }
+    Territory operator()(int source, const Vec3& p) const {
+      double least = 1e300;
+      Territory found = 0;
+      for (int f : parts_.at(source)) {
+        const Vec3 q =
+            spatial::nearest_on_triangle(p, w_.mesh.corner(f, 0), w_.mesh.corner(f, 1), w_.mesh.corner(f, 2));
+        if (const double d = (q - p).squaredNorm(); d < least) least = d, found = label_[f];
+      }
+      return found;
+    }
+
+   private:
+    const WorkMesh& w_;
+    const std::vector<Territory>& label_;
+    std::unordered_map<int, std::vector<int>> parts_;
+  };
+
+  MeshBorder smooth_border(int x, const SeamValues& values) const {
+    const WorkMesh& w = problem_.side[x];
+    const double sign = x ? -1 : 1;
+    std::vector<char> passed(mesh(x).faces.size(), 0);  // by the border
+    {
+      std::vector<char> signs(mesh(x).faces.size(), 0);
+      for (int f = 0; f < w.mesh.face_count(); ++f)
+        for (int v : w.mesh.faces[f]) signs[w.source[f]] |= values.value[x][v] > 0 ? 1 : values.value[x][v] < 0 ? 2 : 4;
+      for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = signs[f] >= 3;
+    }
+    std::vector<char> used = points_of(x, passed);
+    std::fill_n(used.begin(), curve_.points.size(), 0);
+    std::vector<SplitSegment> segments;
+    for (std::size_t s = 0; s < curve_.segments.size(); ++s) {
+      if (!values.pinned[s]) continue;
+      const CrossingSegment& segment = curve_.segments[s];
+      segments.push_back({x ? segment.face_b : segment.face_a, segment.ends});
+      for (int end : segment.ends) used[end] = 1;
+    }
+    MeshBorder border;
+    border.split = split_faces(mesh(x), points_[x], used, segments);
+    const SplitMesh& split = border.split;
+    border.value.assign(split.mesh.vertices.size(), 0);
+    for (int v = 0; v < mesh(x).vertex_count(); ++v) border.value[v] = sign * values.value[x][v];
+    for (std::size_t p = 0; p < used.size(); ++p)
+      if (used[p]) border.value[split.vertex_of[p]] = sign * values.value[x][w.vertex_of[p]];
+    const LabelOfPart label(w, labels_.label[x], passed);
+    border.keep_level.assign(split.mesh.faces.size(), 0);
+    for (int f = 0; f < split.mesh.face_count(); ++f) {
+      const Triangle& t = split.mesh.faces[f];
+      if (border.value[t[0]] == 0 && border.value[t[1]] == 0 && border.value[t[2]] == 0)
+        border.keep_level[f] = label(split.source[f], split.mesh.center(f)) == (x ? kOfB : kOfA);
+    }
+    return border;
+  }
+
+  /// How many borders the labels give a model, beside its own.
+  int label_loops(int x) const {
+    const WorkMesh& w = problem_.side[x];
+    std::vector<std::array<int, 2>> border;
+    for (const WorkMesh::Edge& e : w.edges) {
+      int kept = 0, face = -1;
+      for (int k = e.first_face; k < e.end_face; ++k)
+        if (labels_.label[x][w.edge_faces[k]] == (x ? kOfB : kOfA)) ++kept, face = w.edge_faces[k];
+      if (kept != 1 || e.end_face - e.first_face < 2) continue;
+      const Triangle& t = w.mesh.faces[face];
+      for (int k = 0; k < 3; ++k)
+        if (std::min(t[k], t[(k + 1) % 3]) == e.low && std::max(t[k], t[(k + 1) % 3]) == e.high)
+          border.push_back({t[k], t[(k + 1) % 3]});
+    }
+    return int(mesh::trace_loops(border).size());
+  }
+
+  const Model* model_[2];
+  const Box volume_;
+  const int threads_;
+  spatial::FaceTree tree_[2];
+  CrossingCurve curve_;
+  std::vector<Territory> marks_[2];  ///< per face
+  std::vector<char> still_[2];       ///< per vertex: of a face that stays whole
+  std::vector<SplitPoint> points_[2];
+  MeshProblem problem_;
+  MeshLabels labels_;
+};
+
+MeshBorder MeshCutter::raw_border(int x) const {
+  const WorkMesh& w = problem_.side[x];
+  const Territory own = x ? kOfB : kOfA;
+  std::vector<char> kept(mesh(x).faces.size(), 0), dropped = kept, passed = kept;
+  for (int f = 0; f < w.mesh.face_count(); ++f) (labels_.label[x][f] == own ? kept : dropped)[w.source[f]] = 1;
+  for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
+  std::vector<SplitSegment> segments;
+  for (const CrossingSegment& s : curve_.segments)
+    if (const int f = x ? s.face_b : s.face_a; passed[f]) segments.push_back({f, s.ends});
+  MeshBorder border;
+  border.split = split_faces(mesh(x), points_[x], points_of(x, passed), segments);
+  border.value.assign(border.split.mesh.vertices.size(), 0);
+  const LabelOfPart label(w, labels_.label[x], passed);
+  for (int f = 0; f < border.split.mesh.face_count(); ++f) {
+    const int source = border.split.source[f];
+    border.keep_level.push_back(passed[source] ? label(source, border.split.mesh.center(f)) == own : kept[source]);
+  }
+  return border;
+}
+
+}  // namespace
+
+MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, int threads, CutReport& report,
+                   Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto cutter = std::make_shared<MeshCutter>(a, b, volume, threads);
+  progress.at(0.2);
+  if (!cutter->cut_coarsely())
+    throw UserError(
+        "The models do not touch between what is to be kept of A and of B; move them closer until they overlap.");
+  progress.at(0.6);
+  cutter->cut_finely();
+  progress.at(0.9);
+  cutter->report(report);
+  MeshCut cut = cutter->borders();
+  cut.raw_border = [cutter](int side) { return cutter->raw_border(side); };
+  report.cut_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return cut;
+}
+
+}  // namespace parts::cut

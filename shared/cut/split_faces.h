@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parts/mesh/mesh.h"
+
+namespace parts::cut {
+
+/// A point at which faces of a mesh may be split: on an edge, or in a face.
+struct SplitPoint {
+  Vec3 position;
+  std::array<int, 2> edge{-1, -1};  ///< its vertices, the lower first; -1: in a face
+  double share = 0;                 ///< of the way from the lower vertex, 0..1
+  int face = -1;
+  Vec3 barycentric = Vec3::Zero();
+
+  static SplitPoint on_edge(const Vec3& position, int low, int high, double share) {
+    return {position, {low, high}, share, -1, Vec3::Zero()};
+  }
+  static SplitPoint in_face(const Vec3& position, int face, const Vec3& barycentric) {
+    return {position, {-1, -1}, 0, face, barycentric};
+  }
+};
+
+/// A line in a face along which it is split.
+struct SplitSegment {
+  int face;
+  std::array<int, 2> ends;  ///< indices of points
+};
+
+struct SplitMesh {
+  Mesh mesh;                   ///< the input's vertices first
+  std::vector<int> source;     ///< per face: its index in the input
+  std::vector<int> vertex_of;  ///< per point: its vertex, -1 where it is not used
+};
+
+/// Splits faces at points and along segments by constrained Delaunay
+/// triangulations; faces at none stay as they are, all attributes follow.
+/// @param used  per point: whether the mesh is split there (the segments' ends must be)
+SplitMesh split_faces(const Mesh& mesh, const std::vector<SplitPoint>& points, const std::vector<char>& used,
+                      const std::vector<SplitSegment>& segments);
+
+/// Adds points to where edges of the flagged faces are longer than `longest`
+/// (world units): evenly on such edges, and in rows in the faces.
+/// @param still  per vertex: edges between two of these stay whole
+void add_even_points(const Mesh& mesh, const std::vector<char>& faces, const std::vector<char>& still, double longest,
+                     std::vector<SplitPoint>& points);
+
+}  // namespace parts::cut
