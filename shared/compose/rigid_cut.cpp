@@ -18,16 +18,6 @@ namespace {
 
 constexpr double kLambda = cut::SeamScore::kLambda;
 
-/// A mesh whose vertices at one place are one, without attributes.
-Mesh welded(const Mesh& mesh) {
-  Mesh w;
-  w.vertices = mesh.vertices, w.faces = mesh.faces;
-  const std::vector<int> first = mesh::first_at_same_place(mesh);
-  for (Triangle& f : w.faces)
-    for (int& v : f) v = first[v];
-  return w;
-}
-
 /// How far a pose parts an edge from its image, and turns the surface there.
 class SeamCost {
  public:
@@ -94,7 +84,7 @@ void label_unmarked(const Mesh& mesh, DisjointSets& components, const std::vecto
 RigidCut cut_rigidly(const Mesh& input, const std::vector<char>& fixed, const std::vector<char>& moving,
                      const std::vector<Eigen::Affine3d>& poses) {
   constexpr std::int64_t kForced = std::int64_t(1) << 52;
-  const Mesh mesh = welded(input);
+  const Mesh mesh = mesh::welded(input);
   const double scale = cut::rms_size(mesh);
   if (!(scale > 0)) throw UserError("The model has no extent; choose a layer that holds a surface.");
   const int faces = mesh.face_count();
