@@ -110,8 +110,8 @@ void measure_volume(const Mesh& mesh, const std::vector<Loop>& borders, SurfaceF
   for (const Loop& border : borders) {
     Vec3 hub = Vec3::Zero();
     for (int v : border) hub += (mesh.vertices[v] - middle) / double(border.size());
-    for (std::size_t i = 0; i < border.size(); ++i) {
-      const Vec3 a = mesh.vertices[border[i]] - middle, b = mesh.vertices[border[(i + 1) % border.size()]] - middle;
+    for (int i = 0; i < border.size(); ++i) {
+      const Vec3 a = mesh.vertices[border.vertices[i]] - middle, b = mesh.vertices[border.next(i)] - middle;
       six += hub.dot(b.cross(a));
     }
   }
