@@ -38,10 +38,16 @@ std::vector<char> wall_of(const Mesh& mesh, const mesh::Loop& rim, const Box& bo
   return inside;
 }
 
+bool holds_any(const Mesh& mesh, const std::vector<Vec3>& places) {
+  return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                     [&](const Vec3& v) { return std::find(places.begin(), places.end(), v) != places.end(); });
+}
+
 }  // namespace
 
-bool is_through_a_wall(const Scan& scan, const Region& region) {
-  if (region.rims.size() != 1) return false;
+std::vector<Vec3> rim_in_other_wall(const Scan& scan, const Region& region) {
+  std::vector<Vec3> places;
+  if (region.rims.size() != 1) return places;
   const Mesh& mesh = scan.mesh();
   const Vec3 own = area_vector(mesh, region.rims[0]);
   const double length = mesh::loop_length(mesh, region.rims[0]);
@@ -50,15 +56,22 @@ bool is_through_a_wall(const Scan& scan, const Region& region) {
     const double ratio = mesh::loop_length(mesh, rim) / length;
     const bool inside =
         std::all_of(rim.begin(), rim.end(), [&](int v) { return region.box.contains(mesh.vertices[v]); });
-    if (inside && ratio > 0.5 && ratio < 2 && own.dot(other) < -0.7 * own.norm() * other.norm()) return true;
+    if (!inside || ratio < 0.5 || ratio > 2 || own.dot(other) > -0.7 * own.norm() * other.norm()) continue;
+    for (int v : rim) places.push_back(mesh.vertices[v]);
   }
-  return false;
+  return places;
 }
 
-std::optional<InnerWall> inner_wall(const Scan& scan, const Region& region) {
+std::optional<InnerWall> inner_wall(const Scan& scan, const Region& region, const std::vector<Vec3>& other) {
   std::vector<int> old_vertex, old_face;
-  Mesh mesh = mesh::take_faces(scan.mesh(), wall_of(scan.mesh(), region.rims[0], around(region, 2 * kAround)),
-                               &old_vertex, &old_face);
+  Mesh mesh;
+  for (double share : {2 * kAround, kAround, 0.4, 0.2, 0.0}) {
+    mesh = mesh::take_faces(scan.mesh(), wall_of(scan.mesh(), region.rims[0], around(region, share)), &old_vertex,
+                            &old_face);
+    if (!holds_any(mesh, other)) break;
+    mesh = {};
+  }
+  if (mesh.faces.empty()) return {};
   mesh::flip_orientation(mesh);
   std::vector<int> origin(mesh.faces.size());
   std::iota(origin.begin(), origin.end(), 0);

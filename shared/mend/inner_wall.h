@@ -8,9 +8,10 @@
 
 namespace parts::mend {
 
-/// Whether a hole is one of two through the walls of a hollow shell: another
-/// rim of about its length lies in the region and faces the other way.
-bool is_through_a_wall(const Scan& scan, const Region& region);
+/// Of a hole that is one of two through the walls of a hollow shell, the rim in
+/// the other wall: of about its length, within the region, facing the other way.
+/// @return its vertices' places; empty: there is none
+std::vector<Vec3> rim_in_other_wall(const Scan& scan, const Region& region);
 
 /// A wall of a scan by itself, turned over: what faces inwards is like a model
 /// once it faces outwards.
@@ -21,8 +22,10 @@ struct InnerWall {
   std::vector<int> old_face;
 };
 
-/// The wall that a rim belongs to: of the surface around the region what hangs together with it.
-std::optional<InnerWall> inner_wall(const Scan& scan, const Region& region);
+/// The wall that a rim belongs to: of the surface around the region, as far as
+/// the walls do not meet, what hangs together with it.
+/// @param other  rim_in_other_wall()
+std::optional<InnerWall> inner_wall(const Scan& scan, const Region& region, const std::vector<Vec3>& other);
 
 /// What mended a wall, in the whole scan, turned back. @return as of the whole
 Restored put_back(const Scan& scan, const InnerWall& wall, Restored restored);

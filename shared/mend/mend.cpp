@@ -49,10 +49,10 @@ class Mending {
   const Scan first_;
   Scan scan_;  ///< now
   std::vector<Region> regions_;
-  std::vector<char> through_wall_;    ///< per region: one of the two holes through a wall
-  std::vector<Objection> objection_;  ///< to each region's best model
-  std::vector<Box> changed_;          ///< where patches were made, in their order
-  std::vector<std::size_t> tried_;    ///< per region: how many of these there were when it was tried
+  std::vector<std::vector<Vec3>> other_wall_;  ///< per region: rim_in_other_wall()
+  std::vector<Objection> objection_;           ///< to each region's best model
+  std::vector<Box> changed_;                   ///< where patches were made, in their order
+  std::vector<std::size_t> tried_;             ///< per region: how many of these there were when it was tried
   Mended out_;
 };
 
@@ -73,7 +73,7 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
     search_options_.candidates = std::max(search_options_.candidates, options.restore.fitting.blend);
   out_.chains = first_.chains();
   for (const Region& region : regions_) {
-    through_wall_.push_back(is_through_a_wall(first_, region));
+    other_wall_.push_back(rim_in_other_wall(first_, region));
     RegionReport report;
     report.edges = region.rims.empty() ? 0 : region.rims[0].size();
     report.center = region.box.center();
@@ -119,9 +119,9 @@ void Mending::mend(std::size_t i, Progress part) {
 
 /// A hole through a wall whose outer side has been mended is mended from within.
 Restored Mending::from_models(std::size_t i, const Region& region, Progress part) {
-  if (through_wall_[i] && changed_since(i, 0)) {
+  if (!other_wall_[i].empty() && changed_since(i, 0)) {
     try {
-      if (const std::optional<InnerWall> wall = inner_wall(scan_, region)) {
+      if (const std::optional<InnerWall> wall = inner_wall(scan_, region, other_wall_[i])) {
         Restored r = put_back(scan_, *wall, found_and_pasted(i, wall->scan, wall->region, part.part(0, 50)));
         const Trial whole{
             scan_.mesh(), region.rims, r.mesh, r.source, r.candidate, 1e300, restore_options_.fitting.threads};

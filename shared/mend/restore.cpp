@@ -111,9 +111,10 @@ Objection Mender::attempt(const Opened& opened, const Fit& fit, Restored& out) c
   }
   out.source.clear();
   for (int s : in_opened) out.source.push_back(s < 0 ? s : opened.source[s]);
+  // What is joined to the rim may lie off the model by what the two differ there.
   const double edge = mesh::loop_length(opened.mesh, opened.rims[0]) / opened.rims[0].size();
-  return objection_to(
-      {opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, options.tolerance + 2 * edge, options.threads});
+  const double near = 0.03 * region_.size() + 4 * fit.fitted.rms_after + 0.25 * edge;
+  return objection_to({opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, near, options.threads});
 }
 
 void Mender::give_up(Objection why) const {

@@ -62,7 +62,7 @@ class Fill(lib.MeshCase):
         self.assertEqual(selected.figures()["regions"], "1")
         self.assertTrue((lib.edge_counts(selected.mesh().f)[2] == 1).any(), "the crown stays open")
         both = run([BUSTS.file("hole")], open_crown + [fill])
-        self.assertEqual(both.figures()["regions"], "2")
+        self.assertGreater(int(both.figures()["regions"]), 1)
 
     def test_new_faces_are_selected(self):
         steps = [template("fill_hole", Database=BUSTS.database, **mend.MEND), host_filter("Delete Selected Faces")]

@@ -98,6 +98,28 @@ TEST(Mend, HolesAtAThinBridgeAreFilledEachByItself) {
   expect_whole_sphere(m.mesh, 0.01);
 }
 
+TEST(Mend, BothWallsOfAHollowShellAreClosed) {
+  const auto wall = [](double radius) {
+    const Mesh whole = sphere(Vec3::Zero(), radius, 4);
+    return mesh::take_faces(
+        whole, faces_where(whole, [](const Vec3& c) { return (c.normalized() - Vec3::UnitZ()).norm() > 0.5; }));
+  };
+  const double thickness = 0.08;
+  Mesh inner = wall(1 - thickness);
+  mesh::flip_orientation(inner);
+  const mend::Mended m = fill_all(together({wall(1), inner}), {turned_sphere()});
+  EXPECT_EQ(m.count(mend::RegionReport::End::Left), 0) << mend::summary(m, true);
+  const mesh::MeshCheck c = mesh::check(mesh::welded(m.mesh));
+  EXPECT_TRUE(c.closed() && c.manifold() && c.oriented()) << mesh::to_string(c);
+  EXPECT_EQ(c.components, 2);
+  EXPECT_EQ(mesh::self_intersections(m.mesh), 0);
+  double volume = 0;
+  for (const Triangle& f : m.mesh.faces)
+    volume += m.mesh.vertices[f[0]].dot(m.mesh.vertices[f[1]].cross(m.mesh.vertices[f[2]])) / 6;
+  const double shell = 4 * M_PI / 3 * (1 - std::pow(1 - thickness, 3));
+  EXPECT_NEAR(volume, shell, 0.03 * shell);
+}
+
 TEST(Mend, AFinIsNoHole) {
   Mesh scan = sphere();
   const int a = scan.faces[0][0], b = scan.faces[0][1], n = scan.vertex_count();
