@@ -94,12 +94,13 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     const std::string& beside = image_file.empty() ? depth_file : image_file;
     made.mesh.textures = {render::write_texture(result.color, result.mask, {"", beside, kept})};
     log_value(progress, "texture", made.mesh.textures[0]);
-    outcome.layers.push_back({"Colorized", std::move(made.mesh), true, camera, check_of_depth(false)});
+    outcome.layers.push_back({layer_name(result), std::move(made.mesh), true, camera, check_of_depth(false)});
     outcome.current = 0;
   }
   files.commit();
   log_report(result, progress);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (!result.trusted()) log_value(progress, "warning", doubt(result));
   return outcome;
 }
 

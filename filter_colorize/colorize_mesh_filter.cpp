@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <sstream>
 
 #include "filters.h"
 #include "parameters.h"
@@ -36,10 +37,11 @@ std::vector<Parameter> parameters(const Scene&) {
       text("Views", around, "Views",
            "From where the surface is seen and coloured: yaw,pitch in degrees, separated by semicolons. What no view "
            "sees follows the most similar model."),
-      point("Up", o.up, "Up",
-            "The direction in which mesh and models stand. Where the class's preset has another one, the models stand "
-            "as it says."),
-      point("Front", o.front, "Front", "The direction in which they face; as for Up."),
+      point(
+          "Up", o.up, "Up",
+          "The direction in which the mesh stands. At their defaults, Up and Front are those of the class, or the axes "
+          "along which the mesh is much more like it."),
+      point("Front", o.front, "Front", "The direction in which it faces; as for Up."),
       integer("Width", 300, 8, 4096, "Width (pixels)", "Columns of the views: more give finer colours."),
       integer("Height", 400, 8, 4096, "Height (pixels)", "Rows of the views."),
       choice("Target", kTexture, {"Texture", "Vertex colour"}, "Target",
@@ -68,8 +70,9 @@ colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh,
   o.views = render::parse_views(inputs.text("Views"));
   o.up = class_direction(inputs, "Up", fallback.up, preset.up);
   o.front = class_direction(inputs, "Front", fallback.front, preset.front);
-  o.rendering.up = preset.up.value_or(o.up);
-  o.rendering.front = preset.front.value_or(o.front);
+  o.rendering.up = preset.up.value_or(fallback.up);
+  o.rendering.front = preset.front.value_or(fallback.front);
+  o.find_frame = o.up == o.rendering.up && o.front == o.rendering.front;
   o.rendering.width = inputs.integer("Width");
   o.rendering.height = inputs.integer("Height");
   o.rendering.light.ambient = 1, o.rendering.back = false;
@@ -110,6 +113,12 @@ void add_texture(Mesh& mesh, const colorize::MeshColors& colors, const Inputs& i
   log_value(progress, "texture", mesh.textures[0]);
 }
 
+std::string axis(const Vec3& v) {
+  std::ostringstream text;
+  text << v.x() << " " << v.y() << " " << v.z();
+  return text.str();
+}
+
 Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::string database = inputs.text("Database"), usage_file = inputs.text("UsageFile");
@@ -140,13 +149,18 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   files.commit();
   log_report(colors, progress);
   log_value(progress, "seen", colors.seen);
+  if (colors.turned) {
+    log_value(progress, "up", axis(colors.turned->up));
+    log_value(progress, "front", axis(colors.turned->front));
+  }
   if (!colors.continued)
     log_value(
         progress, "warning",
         "The colours of what no view sees could not be fitted to those around; they are the most similar model's.");
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (!colors.trusted()) log_value(progress, "warning", doubt(colors));
   Outcome outcome;
-  outcome.layers.push_back({"Colorized", std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
+  outcome.layers.push_back({layer_name(colors), std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
   outcome.current = 0;
   outcome.hidden = {inputs.layer("Mesh")};
   return outcome;

@@ -72,6 +72,18 @@ void read_synthesis(const Inputs& inputs, const io::ClassPreset& preset, const c
   o.seed = unsigned(inputs.integer("Seed"));
 }
 
+std::string layer_name(const colorize::ColorizeReport& r) {
+  return r.trusted() ? "Colorized" : "Colorized (not trusted)";
+}
+
+std::string doubt(const colorize::ColorizeReport& r) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "The colours are not to be trusted: the shape is unlike the examples (patches differ by " << r.patch_distance
+       << " standard deviations, those of members by less than 1); give models of its class, or say how it stands.";
+  return text.str();
+}
+
 void log_report(const colorize::ColorizeReport& r, Progress& progress) {
   for (std::size_t k = 0; k < r.used.size(); ++k) {
     std::ostringstream line;

@@ -12,6 +12,10 @@ void add_synthesis(std::vector<host::Parameter>& list);
 void read_synthesis(const host::Inputs& inputs, const io::ClassPreset& preset, const char* slug,
                     colorize::ColorizeOptions& options);
 
+/// What to call the layer of a result, and why one is not to be trusted.
+std::string layer_name(const colorize::ColorizeReport& report);
+std::string doubt(const colorize::ColorizeReport& report);
+
 void log_report(const colorize::ColorizeReport& report, Progress& progress);
 
 }  // namespace parts

@@ -13,10 +13,6 @@
 #include "parts/render/mask.h"
 
 namespace parts::colorize {
-namespace {
-
-/// Mean squared difference of two reliefs; where one
-/// has no foreground, as large as the larger relief.
 double relief_difference(const synthesis::PatchImage& a, const synthesis::PatchImage& b, bool centered) {
   const cv::Point2d shift = centered ? render::centroid(a.mask) - render::centroid(b.mask) : cv::Point2d();
   const cv::Matx23d move(1, 0, shift.x, 0, 1, shift.y);
@@ -32,8 +28,6 @@ double relief_difference(const synthesis::PatchImage& a, const synthesis::PatchI
   squared = squared.mul(squared);
   return (cv::mean(squared, both)[0] * common + miss * (all - common)) / all;
 }
-
-}  // namespace
 
 cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit) {
   cv::Mat d = depth.clone();

@@ -31,6 +31,11 @@ cv::Mat relief(const cv::Mat& depth, const cv::Mat& mask, double pixels_per_unit
 /// The relief's standard deviation over the foreground.
 double relief_spread(const synthesis::PatchImage& image);
 
+/// Mean squared difference of two reliefs, pixels; where one has no foreground,
+/// as large as the larger relief.
+/// @param centered  centroid on centroid
+double relief_difference(const synthesis::PatchImage& a, const synthesis::PatchImage& b, bool centered);
+
 /// The objects that may give colours, by their numbers: all, or those named.
 /// @param names  of each object; labels may leave the file's ending out
 /// @throws UserError  a label that no object has

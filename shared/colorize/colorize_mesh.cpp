@@ -9,7 +9,9 @@
 #include "parts/base/error.h"
 #include "parts/base/memory.h"
 #include "parts/colorize/color_examples.h"
+#include "parts/colorize/find_frame.h"
 #include "parts/colorize/kept_colors.h"
+#include "parts/colorize/posed_mesh.h"
 #include "parts/mesh/attributes.h"
 #include "parts/render/check_memory.h"
 #include "parts/render/rasterize.h"
@@ -38,40 +40,6 @@ synthesis::PatchImage beside(const std::vector<synthesis::PatchImage>& images) {
   return all;
 }
 
-std::vector<examples::Example> see(const examples::ClassModel& model, double frame, const ColorizeMeshOptions& options,
-                                   const examples::ExampleOptions& rendering) {
-  std::vector<examples::Example> all;
-  for (const render::View& view : options.views) all.push_back(examples::render_example(model, view, frame, rendering));
-  return all;
-}
-
-std::vector<synthesis::PatchImage> planes_of(const std::vector<examples::Example>& views) {
-  std::vector<synthesis::PatchImage> all;
-  for (const examples::Example& view : views) all.push_back(color_planes(view));
-  return all;
-}
-
-/// As large as in the class and standing like it, its middle in the origin: in
-/// the frame of the views.
-examples::ClassModel pose(const Mesh& mesh, const examples::ClassModels& models, const ColorizeMeshOptions& options) {
-  examples::ClassModel query;
-  query.mesh = mesh;
-  query.mesh.vertex_normal.clear();
-  if (!options.keep.empty()) query.textures = render::load_textures(mesh);
-  for (const Triangle& f : mesh.faces)
-    for (int v : f)
-      if (!mesh.vertices[v].allFinite())
-        throw UserError("The mesh has coordinates that are not finite; remove those vertices first.");
-  const Box box = mesh.bounds();
-  if (!(box.diagonal().norm() > 0)) throw UserError("All of the mesh lies in one point; choose a surface.");
-  const double size = models.shown_size(box.diagonal().norm());
-  const examples::ExampleOptions& r = options.rendering;
-  const Eigen::Matrix3d turn =
-      render::view_rotation({}, r.up, r.front).transpose() * render::view_rotation({}, options.up, options.front);
-  for (Vec3& v : query.mesh.vertices) v = turn * (v - box.center()) / size;
-  return query;
-}
-
 /// A model's vertices in the frame of the views.
 Mesh in_frame(const examples::ClassModel& model) {
   Mesh mesh;
@@ -96,19 +64,6 @@ bool align(examples::ClassModel& query, const examples::ClassModel& model, int t
   return true;
 }
 
-/// Pixels a unit of the frame: that of the class, less if the query needs more room.
-double frame_for(const examples::ClassModel& query, const examples::ClassModels& models,
-                 const ColorizeMeshOptions& options) {
-  const examples::ExampleOptions& r = options.rendering;
-  double frame = models.frame();
-  for (const render::View& view : options.views) {
-    const Eigen::Vector2d reach =
-        examples::extent(query.mesh, query.center, render::view_rotation(view, r.up, r.front));
-    frame = std::min(frame, 0.48 * std::min(r.width / std::max(reach.x(), 1e-9), r.height / std::max(reach.y(), 1e-9)));
-  }
-  return frame;
-}
-
 /// Compares the query with every model by small views, and keeps those that give their colours.
 std::vector<ColorExample> choose(const examples::ClassModel& query, examples::ClassModels& models,
                                  const ColorizeMeshOptions& options, double frame, ColorizeReport& report,
@@ -116,7 +71,7 @@ std::vector<ColorExample> choose(const examples::ClassModel& query, examples::Cl
   examples::ExampleOptions small = options.rendering;
   const double shrink = std::min(1.0, double(kComparison) / std::max(small.width, small.height));
   small.width = std::max(8, int(small.width * shrink)), small.height = std::max(8, int(small.height * shrink));
-  const std::vector<examples::Example> views = see(query, frame * shrink, options, small);
+  const std::vector<examples::Example> views = see(query, frame * shrink, options.views, small);
   std::vector<synthesis::PatchImage> tiles = planes_of(views);
   const synthesis::PatchImage seen = beside(tiles);
   synthesis::PatchImage kept;
@@ -136,7 +91,7 @@ std::vector<ColorExample> choose(const examples::ClassModel& query, examples::Cl
       progress.log("without_colours: " + model.name);
       continue;
     }
-    all.push_back({i, names[i], 0, beside(planes_of(see(model, frame * shrink, options, small)))});
+    all.push_back({i, names[i], 0, beside(planes_of(see(model, frame * shrink, options.views, small)))});
   }
   if (all.empty())
     throw UserError("No model of the database has colours; give models with textures or vertex colours.");
@@ -211,8 +166,16 @@ MeshColors colorize_mesh(const Mesh& mesh, examples::ClassModels& models, const 
   if (options.views.empty()) throw UserError("No view is given; give yaw,pitch in degrees, as in 0,0; 90,0; 180,0.");
   MeshColors result;
   examples::ClassModel query = pose(mesh, models, options);
+  if (options.find_frame) {
+    progress.stage("Finding how the mesh stands", 0, 2);
+    result.turned = find_frame(query.mesh, models, options);
+    if (result.turned) {
+      options.up = result.turned->up, options.front = result.turned->front;
+      query = pose(mesh, models, options);
+    }
+  }
   double frame = frame_for(query, models, options);
-  progress.stage("Comparing with the models", 0, 20);
+  progress.stage("Comparing with the models", 2, 20);
   std::vector<ColorExample> examples = choose(query, models, options, frame, result, progress);
   if (options.align) {
     Progress aligning = progress.part(20, 25);
@@ -223,10 +186,10 @@ MeshColors colorize_mesh(const Mesh& mesh, examples::ClassModels& models, const 
       examples = choose(query, models, options, frame, result, progress);
     }
   }
-  const std::vector<examples::Example> seen = see(query, frame, options, options.rendering);
+  const std::vector<examples::Example> seen = see(query, frame, options.views, options.rendering);
   std::vector<std::vector<synthesis::PatchImage>> planes{planes_of(seen)};
   for (ColorExample& e : examples)
-    planes.push_back(planes_of(see(models.get(e.object), frame, options, options.rendering)));
+    planes.push_back(planes_of(see(models.get(e.object), frame, options.views, options.rendering)));
   const std::vector<cv::Rect> parts = used_parts(planes);
   check_memory(parts, planes.size());
 

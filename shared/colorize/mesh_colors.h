@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
+#include "parts/colorize/find_frame.h"
 #include "parts/colorize/report.h"
 #include "parts/colorize/view_sheet.h"
 #include "parts/examples/class_models.h"
@@ -15,7 +18,8 @@ struct MeshColors : ColorizeReport {
   std::vector<cv::Mat> planes;          ///< Y, Cb and Cr of the sheet
   cv::Mat example;                      ///< 32S: of the sheet, index into `used`; -1 = background
   ViewSheet sheet;
-  bool oriented = true;   ///< the faces look outwards
+  std::optional<Standing> turned;  ///< it stands otherwise than it was said to
+  bool oriented = true;            ///< the faces look outwards
   bool continued = true;  ///< the colours of hidden parts go over into those that are seen (see complete_colors)
   double seen = 0;        ///< share of the surface that some view sees; the rest follows the model most like it
 

@@ -9,7 +9,9 @@
 #include <filesystem>
 
 #include "parts/base/error.h"
+#include "parts/colorize/find_frame.h"
 #include "parts/colorize/hidden_colors.h"
+#include "parts/colorize/posed_mesh.h"
 #include "parts/io/mesh_io.h"
 #include "parts/render/atlas.h"
 #include "parts/render/check_memory.h"
@@ -133,6 +135,38 @@ TEST_F(ColorizeMeshTest, AnotherUnitPlaceAndStance) {
   for (Vec3& v : query.vertices) v = 1000 * Vec3(v.x(), -v.z(), v.y()) + Vec3(5, 7, 9);  // lying on its back
   options_.up = {0, 0, 1}, options_.front = {0, -1, 0};
   EXPECT_LT(mean_error(egg(0.4), colorize::vertex_colors(colored(query))), 8);
+}
+
+TEST_F(ColorizeMeshTest, FindsTheAxesThatTheMeshStandsAlong) {
+  for (unsigned seed = 1; seed < 6; ++seed)
+    model(("bust" + std::to_string(seed) + ".ply").c_str(), painted(bust(seed, 30)));
+  Progress silent;
+  examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
+  const Mesh query = bust(9, 30);
+  const auto found = [&](const Eigen::Matrix3d& turn) {
+    const Mesh turned = moved(query, Eigen::Affine3d(turn));
+    return colorize::find_frame(colorize::pose(turned, models, options_).mesh, models, options_);
+  };
+  EXPECT_FALSE(found(Eigen::Matrix3d::Identity())) << "it stands as it should";
+  for (int up = 0; up < 6; ++up)
+    for (int front = 0; front < 6; ++front) {
+      if (up / 2 == front / 2 || (up == 2 && front == 4)) continue;
+      const Vec3 y = Vec3::Unit(up / 2) * (up % 2 ? -1 : 1), z = Vec3::Unit(front / 2) * (front % 2 ? -1 : 1);
+      Eigen::Matrix3d turn;
+      turn << y.cross(z), y, z;
+      const auto s = found(turn);
+      EXPECT_TRUE(s && s->up == y && s->front == z) << "up " << y.transpose() << ", front " << z.transpose();
+    }
+  options_.find_frame = true;
+  Mesh lying = query;
+  for (Vec3& v : lying.vertices) v = Vec3(v.x(), -v.z(), v.y());
+  const colorize::MeshColors colors = colored(lying);
+  ASSERT_TRUE(colors.turned);
+  EXPECT_EQ(colors.turned->up, Vec3(0, 0, 1));
+  EXPECT_LT(mean_error(query, colorize::vertex_colors(colors)), 12);
+  EXPECT_TRUE(colors.trusted());
+  options_.find_frame = false;
+  EXPECT_GT(colored(lying).patch_distance, 1.3 * colors.patch_distance);
 }
 
 TEST_F(ColorizeMeshTest, HiddenPartsFollowTheModel) {
