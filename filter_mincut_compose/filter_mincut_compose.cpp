@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The filters of chapter 3.2 of the thesis: placing, composing and bending
 // models. Names, help, parameters, one call into the core, new layers.
+#include <cmath>
 #include <sstream>
 
 #include "parameters.h"
@@ -78,7 +79,8 @@ Outcome align_layer(const Inputs& inputs, Progress& progress) {
   options.allow_scale = inputs.flag("AllowScale");
   options.allow_mirror = inputs.flag("AllowMirror");
   options.max_iterations = inputs.integer("MaxIterations");
-  options.less_overlap = inputs.number("Overlap") == options.overlap;  // nobody has said how much
+  // MeshLab's numbers are single precision. At the default nobody has said how much matches.
+  options.less_overlap = std::abs(inputs.number("Overlap") - options.overlap) < 1e-6;
   options.overlap = inputs.number("Overlap");
   const bool to_vertices = inputs.choice("ApplyTo") == 1, selected = inputs.flag("OnlySelected");
 

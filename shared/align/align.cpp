@@ -30,6 +30,10 @@ constexpr Level kLevels[] = {
     {{250, false, true}, 12, 0.2, true, 10, 0.1},
     {{600, true, true}, 20, 0.1, true, 2, 0.05},
 };
+// Below this overlap the smallest residual is often not of the right place: more
+// poses are kept, and that with which most of the part lies on the other wins.
+constexpr double kLittleOverlap = 0.6;
+constexpr int kMorePoses = 4;
 constexpr Detail kFinal{Comparison::kSamples, true, true};
 
 // Residuals that differ by less are equally good: the pose that moves the model least is taken.
@@ -68,6 +72,8 @@ class Search {
   void score(std::vector<Candidate>& candidates);
   void refine(std::vector<Candidate>& candidates, const Detail& detail, const IcpOptions& icp_options);
   double motion(const Pose& p) const;
+  bool little_overlap() const { return options_.overlap < kLittleOverlap; }
+  const Candidate& lies_on_most(const std::vector<Candidate>& candidates) const;
   const Candidate& choose(const std::vector<Candidate>& candidates) const;
   AlignResult result(const Candidate& chosen) const;
 
@@ -171,7 +177,7 @@ std::vector<Candidate> Search::search(std::vector<Candidate> candidates) {
            {level.detail.samples, level.iterations, options_.overlap, options_.allow_scale && level.may_scale,
             level.sliding, 1e-3});
     for (Candidate& c : candidates) --c.safe_levels;
-    candidates = best_of(std::move(candidates), level.left, level.spacing);
+    candidates = best_of(std::move(candidates), little_overlap() ? kMorePoses * level.left : level.left, level.spacing);
   }
   return candidates;
 }
@@ -183,7 +189,19 @@ double Search::motion(const Pose& p) const {
          (p.mirrored ? 10 : 0);
 }
 
+/// The pose with which most of the part lies on the fixed one.
+const Candidate& Search::lies_on_most(const std::vector<Candidate>& candidates) const {
+  const Candidate* chosen = nullptr;
+  double most = -1;
+  for (const Candidate& c : candidates) {
+    const double share = compare_.share_within(noise_ * c.pose.scale, c.pose, threads_);
+    if (share > most || (share == most && c.rank() < chosen->rank())) most = share, chosen = &c;
+  }
+  return *chosen;
+}
+
 const Candidate& Search::choose(const std::vector<Candidate>& candidates) const {
+  if (little_overlap()) return lies_on_most(candidates);
   const auto by_rank = [](const Candidate& a, const Candidate& b) { return a.rank() < b.rank(); };
   const Candidate* chosen = &*std::min_element(candidates.begin(), candidates.end(), by_rank);
   const double good_enough = chosen->rank() * (1 + kTie) + kTieFloor;
@@ -231,8 +249,10 @@ AlignResult Search::run() {
   return r;
 }
 
-/// Whether as much of the part lies on the fixed one as should.
-bool matches(const AlignResult& r) { return r.inlier_share >= 0.8 * r.overlap; }
+/// How much of the part should lie on the fixed one at least. Less than two
+/// fifths say little: so much of one smooth thing lies on another in many ways.
+double enough(double overlap) { return std::max(0.8 * overlap, 0.4); }
+bool matches(const AlignResult& r) { return r.inlier_share >= enough(r.overlap); }
 
 /// Looks anew with ever less overlap, and takes the first place at which all of
 /// it matches, if that is clearly more than matches now.
@@ -268,7 +288,7 @@ std::vector<std::string> doubts_of(const AlignResult& r, double size_ratio, cons
                      " as the fixed one; if their units differ, switch AllowScale on or scale one of them first.");
   if (!matches(r))
     doubts.push_back("Only " + percents(r.inlier_share) + " of the moving part lie on the fixed one where " +
-                     percents(r.overlap) +
+                     percents(std::max(r.overlap, enough(r.overlap))) +
                      " should; look at the place, and select the parts that match, give their Overlap, or place the "
                      "layer roughly by hand first.");
   else if (r.overlap < options.overlap)
