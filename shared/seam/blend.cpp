@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "parts/mesh/edges.h"
 #include "parts/mesh/laplacian.h"
@@ -36,6 +37,15 @@ double share(std::vector<double> values, double part) {
   return *at;
 }
 
+double mean_edge(const Mesh& mesh, const std::function<bool(const Triangle&)>& pass) {
+  double sum = 0;
+  long count = 0;
+  for (const Triangle& f : mesh.faces)
+    if (pass(f))
+      for (int k = 0; k < 3; ++k) sum += (mesh.vertices[f[k]] - mesh.vertices[f[(k + 1) % 3]]).norm(), ++count;
+  return count ? sum / double(count) : 0;
+}
+
 /// Of the surfaces beside the seam: of faces next to those at it.
 double mean_edge_beside(const Mesh& mesh, const std::vector<char>& seam) {
   std::vector<char> near = seam;
@@ -46,22 +56,24 @@ double mean_edge_beside(const Mesh& mesh, const std::vector<char>& seam) {
         for (int v : f) wider[v] = 1;
     near.swap(wider);
   }
-  double sum = 0;
-  long count = 0;
-  for (const Triangle& f : mesh.faces)
-    if (near[f[0]] && near[f[1]] && near[f[2]] && !seam[f[0]] && !seam[f[1]] && !seam[f[2]])
-      for (int k = 0; k < 3; ++k) sum += (mesh.vertices[f[k]] - mesh.vertices[f[(k + 1) % 3]]).norm(), ++count;
-  return count ? sum / double(count) : 0;
+  return mean_edge(mesh, [&](const Triangle& f) {
+    return near[f[0]] && near[f[1]] && near[f[2]] && !seam[f[0]] && !seam[f[1]] && !seam[f[2]];
+  });
 }
 
 /// So wide that an edge takes up 3 degrees of what the seam bends in the median,
-/// 10 where it bends most, and of the step that it was.
-double natural_distance(const std::vector<double>& angles, double edge, double gap) {
-  constexpr double kUsual = 6, kMost = 20;  // degrees an edge of the distance, on both sides
-  constexpr double kNarrow = 4, kWide = 12;
-  const double edges =
-      std::max({share(angles, 0.5) / kUsual, share(angles, 0.95) / kMost, edge > 0 ? std::sqrt(30 * gap / edge) : 0});
-  return edge * std::clamp(edges, kNarrow, kWide);
+/// 10 where it bends most, and of the step that it was; within limits, as a fillet
+/// as large as the models is no seam.
+/// @param beside  the mean edge beside the seam. The cut split the faces that it
+///                met: of edges that are longer elsewhere, up to four times that counts.
+double natural_distance(const Mesh& mesh, const std::vector<double>& angles, double beside, double gap) {
+  constexpr double kUsual = 6, kMost = 20;                    // degrees an edge of the distance, on both sides
+  constexpr double kNarrow = 4, kWide = 12, kLargest = 0.06;  // of the models' size
+  if (!(beside > 0)) return 0;
+  const double edge = std::clamp(mean_edge(mesh, [](const Triangle&) { return true; }), beside, 4 * beside);
+  const double size = mesh.bounds().diagonal().norm();
+  const double edges = std::max({share(angles, 0.5) / kUsual, share(angles, 0.95) / kMost, std::sqrt(30 * gap / edge)});
+  return std::max(kNarrow * edge, std::min(kLargest * size, edge * std::min(edges, kWide)));
 }
 
 /// The part of the surface that gives way, as a system of its own.
@@ -267,8 +279,9 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   SeamBlend report;
   const std::vector<double> angles = seam_angles(mesh, seam);
   report.angle_before = report.angle_after = share(angles, 0.5);
-  report.distance = distance > 0 ? distance : natural_distance(angles, mean_edge_beside(mesh, seam), gap);
-  if (!(report.distance > 0)) return report;
+  const double edge = mean_edge_beside(mesh, seam);
+  report.distance = distance > 0 ? distance : natural_distance(mesh, angles, edge, gap);
+  if (!(report.distance >= edge) || edge == 0) return report;
   Neighbourhood near(mesh, seam, fixed, report.distance);
   // A sharp crease is no small one: its normals are not known before it is flatter.
   constexpr int kRounds = 3;

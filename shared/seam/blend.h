@@ -25,8 +25,11 @@ struct SeamBlend {
 /// bit, and so do fixed ones.
 /// @param seam      per vertex: not 0 on the seam
 /// @param fixed     per vertex: 1 stays where it is
-/// @param distance  world units; 0 = chosen from the angle across the seam and
-///                  the step that it was: up to twelve edges
+/// @param distance  world units, nothing moves if it is less than an edge; 0 = chosen from the angle across the seam
+/// and
+///                  the step that it was: four to twelve edges, and no more than
+///                  6 % of the mesh's size where four are less
+/// @param gap       world units; how far the borders were apart before
 SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
                      double gap);
 

@@ -121,6 +121,66 @@ TEST(Blend, NothingToBlend) {
   for (const Vec3& p : flat.vertices) EXPECT_TRUE(p.allFinite());
 }
 
+/// Degrees between faces of A and of B, or of the stitch between them: the median and the share of 95 %.
+std::array<double, 2> across(const compose::ComposeResult& r) {
+  std::vector<double> angles;
+  mesh::for_each_mesh_edge(mesh::sorted_half_edges(r.composed), [&](auto first, auto last) {
+    if (last - first != 2) return;
+    const int f = first->face, g = first[1].face;
+    if (r.face_from_b[f] == r.face_from_b[g] && r.face_from_b[f] != 2) return;
+    const Vec3 m = r.composed.area_vector(f), n = r.composed.area_vector(g);
+    angles.push_back(std::atan2(m.cross(n).norm(), m.dot(n)) * 180 / M_PI);
+  });
+  std::sort(angles.begin(), angles.end());
+  if (angles.empty()) return {0, 0};
+  return {angles[angles.size() / 2], angles[angles.size() * 95 / 100]};
+}
+
+TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
+  for (const unsigned seed : {1u, 3u, 6u}) {
+    cut::Part a{bust(seed), {}}, b{bust(seed + 9), {}};
+    const Box box = a.mesh.bounds();
+    const auto share = [&](const Vec3& p, int axis) { return (p[axis] - box.min()[axis]) / box.sizes()[axis]; };
+    a.keep = faces_where(a.mesh, [&](const Vec3& c) { return share(c, 1) < 0.2 || share(c, 2) < 0.3; });
+    b.keep =
+        faces_where(b.mesh, [&](const Vec3& c) { return share(c, 1) > 0.6 && share(c, 1) < 0.9 && share(c, 2) > 0.8; });
+    compose::ComposeOptions options;
+    const compose::ComposeResult plain = compose_quietly(a, b, options);
+    options.smoothing.blend = true;
+    const compose::ComposeResult r = compose_quietly(a, b, options);
+    const std::string what = "bust " + std::to_string(seed);
+    expect_closed_manifold(r.composed, what);
+    EXPECT_EQ(missing_faces(r, a, b), 0) << what;
+    EXPECT_EQ(mesh::self_intersections(r.composed), 0) << what;
+    EXPECT_GT(across(plain)[0], 10) << what;  // else there was nothing to do
+    EXPECT_LT(across(r)[0], 3) << what;
+    EXPECT_LT(across(r)[1], 10) << what;
+  }
+}
+
+TEST(Blend, RandomScenesKeepTheirPromises) {
+  long crossing = 0, crossing_before = 0;
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const Scene scene = random_scene(seed);
+    const cut::Part a{scene.a, scene.keep_a}, b{scene.b, scene.keep_b};
+    compose::ComposeOptions options;
+    options.resolution = 40;
+    compose::ComposeResult plain, r;
+    try {
+      plain = compose_quietly(a, b, options);
+      options.smoothing.blend = true;
+      r = compose_quietly(a, b, options);
+    } catch (const UserError&) {
+      continue;
+    }
+    expect_closed_manifold(r.composed, std::to_string(seed));
+    EXPECT_EQ(missing_faces(r, a, b), 0) << seed;
+    EXPECT_LE(across(r)[0], across(plain)[0] + 2) << seed;
+    crossing_before += mesh::self_intersections(plain.composed), crossing += mesh::self_intersections(r.composed);
+  }
+  EXPECT_LE(crossing, crossing_before + 10);
+}
+
 TEST(Band, DistancesRunAlongTheSurface) {
   const Roof roof(0, 0, 0);
   const seam::Band band = seam::band_around(roof.mesh, roof.seam, 0.3);
