@@ -9,6 +9,7 @@
 #include "parts/compose/compose.h"
 #include "parts/compose/constraint.h"
 #include "parts/compose/deform.h"
+#include "parts/compose/judge.h"
 #include "parts/host/common.h"
 
 namespace parts {
@@ -16,6 +17,7 @@ namespace parts {
 namespace {
 
 using host::composition_reference;
+using host::cut_of;
 using host::Inputs;
 using host::Layer;
 using host::log_value;
@@ -30,11 +32,20 @@ std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter,
                                     inputs.point((parameter + "Max").c_str()), model);
 }
 
+/// None, or a value of ConstraintBy but for the selected faces, then two points of a box.
+std::vector<char> dropped_faces(const Inputs& inputs, const std::string& parameter, const Mesh& mesh,
+                                const char* model) {
+  const int by = inputs.choice(parameter.c_str());
+  if (by == 0) return {};
+  return compose::constrained_faces(mesh, compose::ConstraintBy(by), inputs.point((parameter + "Min").c_str()),
+                                    inputs.point((parameter + "Max").c_str()), model, compose::Mark::Drop);
+}
+
 /// The options that Compose and Deform have in common.
 compose::ComposeOptions cut_options(const Inputs& inputs) {
   compose::ComposeOptions options;
   options.resolution = inputs.integer("Resolution");
-  options.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh;  // a 2 of older scripts: Mesh
+  options.cut = cut_of(inputs);
   options.smoothing = smoothing_of(inputs);
   return options;
 }
@@ -47,14 +58,21 @@ Box volume_of(const Inputs& inputs) {
   return Box(min, max);
 }
 
-void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress& progress) {
-  std::ostringstream grid;
-  grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
-  log_value(progress, "grid", grid.str());
-  log_value(progress, "voxel_size", r.voxel_size);
-  log_value(progress, "voxels_a", r.voxels_a);
-  log_value(progress, "voxels_b", r.voxels_b);
-  log_value(progress, "voxels_both", r.voxels_both);
+void log_report(const compose::ComposeReport& r, const Mesh& composed, cut::Cut cut, Progress& progress) {
+  if (cut == cut::Cut::Thesis) {
+    std::ostringstream grid;
+    grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
+    log_value(progress, "grid", grid.str());
+    log_value(progress, "voxel_size", r.voxel_size);
+    log_value(progress, "voxels_a", r.voxels_a);
+    log_value(progress, "voxels_b", r.voxels_b);
+    log_value(progress, "voxels_both", r.voxels_both);
+  } else {
+    log_value(progress, "scale", r.scale);
+    log_value(progress, "reach", r.reach);
+    log_value(progress, "crossing_segments", r.crossing_segments);
+    log_value(progress, "broken_ties", r.broken_ties);
+  }
   log_value(progress, "cut_cost", r.cut_cost);
   log_value(progress, "cut_seconds", r.cut_seconds);
   log_value(progress, "seam_length", r.seam_length);
@@ -68,6 +86,39 @@ void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress&
   log_value(progress, "reversed_b", r.reversed_b);
   log_value(progress, "faces", composed.face_count());
   log_value(progress, "seconds", r.seconds);
+}
+
+/// The result's figures, each beside the inputs', and a warning for each that is worse.
+void log_figures(const std::vector<compose::SurfaceFigures>& inputs, const compose::SurfaceFigures& result,
+                 bool stitched, Progress& progress) {
+  compose::SurfaceFigures sum;
+  for (const compose::SurfaceFigures& f : inputs) {
+    sum.pieces += f.pieces, sum.border_loops += f.border_loops;
+    sum.bad_elements += f.bad_elements, sum.crossings += f.crossings;
+  }
+  const auto log = [&](const char* name, const auto& figure) {
+    std::ostringstream text;
+    text << figure(result) << " (inputs:";
+    for (const compose::SurfaceFigures& f : inputs) text << " " << figure(f);
+    log_value(progress, name, text.str() + ")");
+  };
+  log("pieces", [](const compose::SurfaceFigures& f) { return f.pieces; });
+  log("border_loops", [](const compose::SurfaceFigures& f) { return f.border_loops; });
+  log("bad_elements", [](const compose::SurfaceFigures& f) { return f.bad_elements; });
+  log("crossing_faces", [](const compose::SurfaceFigures& f) { return f.crossings; });
+  for (const std::string& sentence : compose::shortcomings(sum, result, stitched))
+    log_value(progress, "warning", sentence);
+}
+
+void log_judgement(const compose::Judgement& j, bool stitched, Progress& progress) {
+  const double unit = cut::SeamScore::kLambda * j.seam.scale * j.seam.scale;
+  log_value(progress, "objective", j.seam.total());
+  log_value(progress, "objective_gap", j.seam.gap / unit);
+  log_value(progress, "objective_length", j.seam.length / unit);
+  log_value(progress, "objective_turn", j.seam.turn / unit);
+  log_value(progress, "objective_unfaced", j.seam.unfaced / unit);
+  log_value(progress, "unfaced_length", j.unfaced_length);
+  log_figures({j.a, j.b}, j.result, stitched, progress);
 }
 
 Outcome align_layer(const Inputs& inputs, Progress& progress) {
@@ -113,8 +164,11 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   cut::Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
   part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "model A");
   part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
+  part_a.drop = dropped_faces(inputs, "DropA", part_a.mesh, "model A");
+  part_b.drop = dropped_faces(inputs, "DropB", part_b.mesh, "model B");
   compose::ComposeResult result = compose::compose(part_a, part_b, options, progress);
-  log_report(result.report, result.composed, progress);
+  log_report(result.report, result.composed, options.cut, progress);
+  log_judgement(compose::judge(part_a.mesh, part_b.mesh, result, options.threads), options.stitch, progress);
   if (options.stitch && result.report.loops_joined + result.report.pieces_joined == 0)
     log_value(progress, "warning",
               "Nothing was stitched, as no border of one model faces one of the other; move the models farther into "
@@ -147,11 +201,13 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const std::vector<char> moving = kept_faces(inputs, "Moving", mesh, "the moving part");
   std::vector<compose::ComposeResult> results = compose::deform(mesh, fixed, moving, pose, frames, options, progress);
 
+  const compose::SurfaceFigures at_rest = compose::figures_of(mesh, options.threads);
   Outcome outcome;
   const std::string count = std::to_string(results.size());
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
-    log_report(results[i].report, results[i].composed, progress);
+    log_report(results[i].report, results[i].composed, options.cut, progress);
+    log_figures({at_rest}, compose::figures_of(results[i].composed, options.threads), false, progress);
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size()});
   }

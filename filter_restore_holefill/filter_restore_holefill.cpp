@@ -72,7 +72,7 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   o.refine = inputs.flag("Refine");
   o.allow_scale = inputs.flag("AllowScale");
   o.resolution = inputs.integer("Resolution");
-  o.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh;
+  o.cut = cut_of(inputs);
   o.smoothing = smoothing_of(inputs);
   o.fit_to_rim = inputs.flag("FitToRim");
   o.blend = inputs.integer("Blend");

@@ -13,12 +13,13 @@ void assemble(const cut::Model& a, seam::Clipped clipped_a, const cut::Model& b,
   progress.stage("Stitching and smoothing", 75, 95);
   seam::Joined joined = seam::join_parts(a, clipped_a, b, clipped_b);
   ComposeReport& report = t.result.report;
+  report.seam_edge = measure.edge;
   report.loops_a = int(joined.loops_a.size()), report.loops_b = int(joined.loops_b.size());
   if (options.stitch) {
     t.flaws = seam::stitch_parts(joined, measure.max_gap, report);
     progress.at(0.6);
-    t.flaws += measure.edge *
-               double(seam::finish_seam(joined, measure.edge, options.cut, options.smoothing, options.threads));
+    t.flaws +=
+        measure.edge * double(seam::finish_seam(joined, measure.edge, options.cut, options.smoothing, options.threads));
   }
   t.result.composed = std::move(joined.mesh);
   t.result.face_from_b = std::move(joined.tag);

@@ -19,8 +19,13 @@ std::uint64_t edge_key(int a, int b) {
 class BorderClipper {
  public:
   BorderClipper(const cut::MeshBorder& border, const std::vector<char>& keep)
-      : border_(border), must_stay_(keep), mesh_(border.split.mesh), source_(border.split.source),
-        live_(mesh_.faces.size(), 1), value_(border.value), whole_vertices_(mesh_.vertex_count()) {
+      : border_(border),
+        must_stay_(keep),
+        mesh_(border.split.mesh),
+        source_(border.split.source),
+        live_(mesh_.faces.size(), 1),
+        value_(border.value),
+        whole_vertices_(mesh_.vertex_count()) {
     mesh::for_each_mesh_edge(mesh::sorted_half_edges(mesh_), [&](auto first, auto last) {
       if (last - first == 1) own_border_.insert(edge_key(first->from, first->to));
     });

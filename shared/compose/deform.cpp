@@ -68,9 +68,7 @@ double longest_way(const Mesh& mesh, const RigidCut& cut, const RigidPose& pose)
   return longest;
 }
 
-double mean_edge(const RigidCut& cut) {
-  return cut.seam.empty() ? 0 : cut.length / double(cut.seam.size());
-}
+double mean_edge(const RigidCut& cut) { return cut.seam.empty() ? 0 : cut.length / double(cut.seam.size()); }
 
 /// The mesh itself with every vertex where its share of the pose takes it.
 class BlendedFrames {
@@ -154,8 +152,7 @@ std::vector<ComposeResult> deform_one_mesh(const Mesh& mesh, const std::vector<c
       results.push_back(at_rest(mesh));
     } else if (pose.mirror) {
       Progress silent;
-      results.push_back(
-          mirrored_frame(mesh, fixed, moving, cut, transform(pose, shares[k]), options, silent));
+      results.push_back(mirrored_frame(mesh, fixed, moving, cut, transform(pose, shares[k]), options, silent));
     } else {
       ComposeResult r;
       r.composed = blended.frame(shares[k], options.threads);

@@ -20,7 +20,8 @@ struct Laplacian {
   std::vector<double> area;
 
   /// @param vertex  per vertex of the mesh: the first at its place
-  Laplacian(const Mesh& mesh, const std::vector<int>& vertex) : around(mesh.vertices.size()), area(mesh.vertices.size(), 0) {
+  Laplacian(const Mesh& mesh, const std::vector<int>& vertex)
+      : around(mesh.vertices.size()), area(mesh.vertices.size(), 0) {
     for (int f = 0; f < mesh.face_count(); ++f)
       for (int k = 0; k < 3; ++k) {
         const int i = vertex[mesh.faces[f][k]], j = vertex[mesh.faces[f][(k + 1) % 3]],

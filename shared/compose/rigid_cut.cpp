@@ -85,7 +85,8 @@ void label_unmarked(const Mesh& mesh, DisjointSets& components, const std::vecto
     if (const auto hit = tree.nearest(mesh.center(f), best.distance); hit.face >= 0) best = hit;
   }
   for (int f = 0; f < mesh.face_count(); ++f)
-    if (const auto& hit = nearest[components.find(f)]; !decided[f]) moves[f] = hit.face >= 0 && moves[old_face[hit.face]];
+    if (const auto& hit = nearest[components.find(f)]; !decided[f])
+      moves[f] = hit.face >= 0 && moves[old_face[hit.face]];
 }
 
 }  // namespace

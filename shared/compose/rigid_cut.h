@@ -10,11 +10,11 @@ namespace parts::compose {
 /// Where one mesh is cut into a part that rests and a part that moves: a face
 /// is in one of the two, whatever the pose.
 struct RigidCut {
-  std::vector<char> moves;                   ///< per face
-  std::vector<std::array<int, 2>> seam;      ///< edges between the parts: vertices
-  double length = 0;                         ///< of the seam at rest, world units
-  double gap = 0;                            ///< mean distance of the seam from its image, world units, over the poses
-  double cost = 0;                           ///< of the cut, in lengths of lambda S (see SeamScore), over the poses
+  std::vector<char> moves;               ///< per face
+  std::vector<std::array<int, 2>> seam;  ///< edges between the parts: vertices
+  double length = 0;                     ///< of the seam at rest, world units
+  double gap = 0;                        ///< mean distance of the seam from its image, world units, over the poses
+  double cost = 0;                       ///< of the cut, in lengths of lambda S (see SeamScore), over the poses
 };
 
 /// The minimal cut between the faces that rest and those that move, on the

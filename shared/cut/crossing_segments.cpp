@@ -47,8 +47,7 @@ class Finder {
     double farthest = -1;
     for (int i = 0; i < count; ++i)
       for (int j = i + 1; j < count; ++j)
-        if (const double d =
-                (curve.points[found[i]].position - curve.points[found[j]].position).squaredNorm();
+        if (const double d = (curve.points[found[i]].position - curve.points[found[j]].position).squaredNorm();
             d > farthest)
           farthest = d, ends = {found[i], found[j]};
     curve.segments.push_back({face_a, face_b, ends});
@@ -106,8 +105,9 @@ CrossingCurve find_crossings(const Mesh& a, const spatial::FaceTree& tree_a, con
 std::vector<SplitPoint> split_points(const CrossingCurve& curve, const Mesh& mesh, bool of_a) {
   std::vector<SplitPoint> points;
   for (const CrossingPoint& p : curve.points)
-    points.push_back(p.edge_of_a == of_a ? SplitPoint::on_edge(p.position, p.edge[0], p.edge[1], p.share)
-                                         : SplitPoint::in_face(p.position, p.face, barycentric(mesh, p.face, p.position)));
+    points.push_back(p.edge_of_a == of_a
+                         ? SplitPoint::on_edge(p.position, p.edge[0], p.edge[1], p.share)
+                         : SplitPoint::in_face(p.position, p.face, barycentric(mesh, p.face, p.position)));
   return points;
 }
 

@@ -20,13 +20,13 @@ struct MeshBorder {
 
 /// A minimal cut on the two meshes themselves (thesis 6.1).
 struct MeshCut {
-  MeshBorder border[2];      ///< smooth; of A, of B
+  MeshBorder border[2];  ///< smooth; of A, of B
   /// As the labels are, along faces of the work meshes: 0 = A's, 1 = B's. Valid
   /// as long as the models live.
   std::function<MeshBorder(int side)> raw_border;
-  int loops[2] = {0, 0};     ///< that the labels' borders have
-  double edge = 0;           ///< world units: the mean edge at the seam
-  double gap = 0;            ///< world units: the farthest that the borders are apart
+  int loops[2] = {0, 0};  ///< that the labels' borders have
+  double edge = 0;        ///< world units: the mean edge at the seam
+  double gap = 0;         ///< world units: the farthest that the borders are apart
 };
 
 /// Every face of both meshes gets one label, the territory that it lies in, by

@@ -146,7 +146,7 @@ class Splitter {
 
   const std::vector<SplitPoint>& points_;
   std::unordered_map<std::uint64_t, std::vector<OnEdge>> on_edge_;
-  std::unordered_map<int, std::vector<int>> inside_;                  ///< per face: points
+  std::unordered_map<int, std::vector<int>> inside_;                ///< per face: points
   std::unordered_map<int, std::vector<std::array<int, 2>>> lines_;  ///< per face: ends of segments
   std::vector<char> dead_;
 };
@@ -191,8 +191,8 @@ void add_even_points(const Mesh& mesh, const std::vector<char>& faces, const std
       for (int i = 1; i < n; ++i) {
         Vec3 l;
         l[(base + 2) % 3] = up, l[(base + 1) % 3] = (1 - up) * i / n, l[base] = (1 - up) * (n - i) / n;
-        points.push_back(SplitPoint::in_face(
-            l[0] * mesh.corner(f, 0) + l[1] * mesh.corner(f, 1) + l[2] * mesh.corner(f, 2), f, l));
+        points.push_back(
+            SplitPoint::in_face(l[0] * mesh.corner(f, 0) + l[1] * mesh.corner(f, 1) + l[2] * mesh.corner(f, 2), f, l));
       }
     }
   }

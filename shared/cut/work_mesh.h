@@ -19,9 +19,9 @@ constexpr Territory kOfA = 1, kOfB = -1;
 /// on the other model.
 struct WorkMesh {
   struct Edge {
-    int low, high;                       ///< vertices
-    int first_face, end_face;            ///< indices into edge_faces
-    double turn = -1;                    ///< on a crossing: 1 - cosine between the two models' normals there
+    int low, high;             ///< vertices
+    int first_face, end_face;  ///< indices into edge_faces
+    double turn = -1;          ///< on a crossing: 1 - cosine between the two models' normals there
     bool crossing() const { return turn >= 0; }
   };
   /// What is nearest on the other model.

@@ -251,7 +251,7 @@ Restored Mender::thesis_cut(const Fit& fit, const std::vector<char>& keep,
   if (after.boundary_loops > wanted || after.nonmanifold_edges > before.nonmanifold_edges ||
       after.components > before.components)
     throw UserError(
-        "The cut of the thesis does not close the surface here; choose the cut Refined, or another Resolution.");
+        "The cut of the thesis does not close the surface here; choose the cut Mesh, or another Resolution.");
   Restored out;
   RestoreReport& r = out.report;
   r.model = fit.model, r.blended = fit.blended;

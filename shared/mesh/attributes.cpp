@@ -59,9 +59,9 @@ int add_vertex_within(Mesh& m, int face, const Vec3& l) {
   if (!m.vertex_color.empty()) {
     Color c;
     for (int k = 0; k < 4; ++k)
-      c[k] = std::uint8_t(std::clamp(l[0] * m.vertex_color[t[0]][k] + l[1] * m.vertex_color[t[1]][k] +
-                                         l[2] * m.vertex_color[t[2]][k] + 0.5,
-                                     0.0, 255.0));
+      c[k] = std::uint8_t(std::clamp(
+          l[0] * m.vertex_color[t[0]][k] + l[1] * m.vertex_color[t[1]][k] + l[2] * m.vertex_color[t[2]][k] + 0.5, 0.0,
+          255.0));
     m.vertex_color.push_back(c);
   }
   if (!m.vertex_quality.empty())

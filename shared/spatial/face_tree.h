@@ -46,7 +46,7 @@ class FaceTree {
   Box box(int at) const { return Box(corners_[at][0]).extend(corners_[at][1]).extend(corners_[at][2]); }
 
   std::vector<Node> nodes_;
-  std::vector<int> order_;                      ///< faces in the leaves' order
+  std::vector<int> order_;                    ///< faces in the leaves' order
   std::vector<std::array<Vec3, 3>> corners_;  ///< theirs
 };
 
