@@ -9,7 +9,7 @@
 #include "parts/compose/compose.h"
 #include "parts/compose/constraint.h"
 #include "parts/compose/deform.h"
-#include "parts/compose/judge.h"
+#include "parts/cut/seam_score.h"
 #include "parts/host/common.h"
 
 namespace parts {
@@ -88,37 +88,14 @@ void log_report(const compose::ComposeReport& r, const Mesh& composed, cut::Cut 
   log_value(progress, "seconds", r.seconds);
 }
 
-/// The result's figures, each beside the inputs', and a warning for each that is worse.
-void log_figures(const std::vector<compose::SurfaceFigures>& inputs, const compose::SurfaceFigures& result,
-                 bool stitched, Progress& progress) {
-  compose::SurfaceFigures sum;
-  for (const compose::SurfaceFigures& f : inputs) {
-    sum.pieces += f.pieces, sum.border_loops += f.border_loops;
-    sum.bad_elements += f.bad_elements, sum.crossings += f.crossings;
-  }
-  const auto log = [&](const char* name, const auto& figure) {
-    std::ostringstream text;
-    text << figure(result) << " (inputs:";
-    for (const compose::SurfaceFigures& f : inputs) text << " " << figure(f);
-    log_value(progress, name, text.str() + ")");
-  };
-  log("pieces", [](const compose::SurfaceFigures& f) { return f.pieces; });
-  log("border_loops", [](const compose::SurfaceFigures& f) { return f.border_loops; });
-  log("bad_elements", [](const compose::SurfaceFigures& f) { return f.bad_elements; });
-  log("crossing_faces", [](const compose::SurfaceFigures& f) { return f.crossings; });
-  for (const std::string& sentence : compose::shortcomings(sum, result, stitched))
-    log_value(progress, "warning", sentence);
-}
-
-void log_judgement(const compose::Judgement& j, bool stitched, Progress& progress) {
-  const double unit = cut::SeamScore::kLambda * j.seam.scale * j.seam.scale;
-  log_value(progress, "objective", j.seam.total());
-  log_value(progress, "objective_gap", j.seam.gap / unit);
-  log_value(progress, "objective_length", j.seam.length / unit);
-  log_value(progress, "objective_turn", j.seam.turn / unit);
-  log_value(progress, "objective_unfaced", j.seam.unfaced / unit);
-  log_value(progress, "unfaced_length", j.unfaced_length);
-  log_figures({j.a, j.b}, j.result, stitched, progress);
+/// The objective J of the seam and its parts.
+void log_seam(const cut::SeamScore& s, Progress& progress) {
+  const double unit = cut::SeamScore::kLambda * s.scale * s.scale;
+  log_value(progress, "objective", s.total());
+  log_value(progress, "objective_gap", s.gap / unit);
+  log_value(progress, "objective_length", s.length / unit);
+  log_value(progress, "objective_turn", s.turn / unit);
+  log_value(progress, "objective_unfaced", s.unfaced / unit);
 }
 
 Outcome align_layer(const Inputs& inputs, Progress& progress) {
@@ -168,7 +145,10 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   part_b.drop = dropped_faces(inputs, "DropB", part_b.mesh, "model B");
   compose::ComposeResult result = compose::compose(part_a, part_b, options, progress);
   log_report(result.report, result.composed, options.cut, progress);
-  log_judgement(compose::judge(part_a.mesh, part_b.mesh, result, options.threads), options.stitch, progress);
+  log_seam(
+      cut::score_seam(cut::borders_of(part_a.mesh, result.clipped_a), cut::borders_of(part_b.mesh, result.clipped_b),
+                      std::min(cut::rms_size(part_a.mesh), cut::rms_size(part_b.mesh))),
+      progress);
   if (options.stitch && result.report.loops_joined + result.report.pieces_joined == 0)
     log_value(progress, "warning",
               "Nothing was stitched, as no border of one model faces one of the other; move the models farther into "
@@ -201,13 +181,11 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const std::vector<char> moving = kept_faces(inputs, "Moving", mesh, "the moving part");
   std::vector<compose::ComposeResult> results = compose::deform(mesh, fixed, moving, pose, frames, options, progress);
 
-  const compose::SurfaceFigures at_rest = compose::figures_of(mesh, options.threads);
   Outcome outcome;
   const std::string count = std::to_string(results.size());
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
     log_report(results[i].report, results[i].composed, options.cut, progress);
-    log_figures({at_rest}, compose::figures_of(results[i].composed, options.threads), false, progress);
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     outcome.layers.push_back({name, std::move(results[i].composed), i + 1 == results.size()});
   }
