@@ -10,6 +10,7 @@
 #include "parts/compose/compose.h"
 #include "parts/compose/constraint.h"
 #include "parts/compose/deform.h"
+#include "parts/cut/seam_score.h"
 #include "parts/host/common.h"
 
 namespace parts {
@@ -17,6 +18,7 @@ namespace parts {
 namespace {
 
 using host::composition_reference;
+using host::cut_of;
 using host::Inputs;
 using host::Layer;
 using host::log_value;
@@ -31,11 +33,20 @@ std::vector<char> kept_faces(const Inputs& inputs, const std::string& parameter,
                                     inputs.point((parameter + "Max").c_str()), model);
 }
 
+/// None, or a value of ConstraintBy but for the selected faces, then two points of a box.
+std::vector<char> dropped_faces(const Inputs& inputs, const std::string& parameter, const Mesh& mesh,
+                                const char* model) {
+  const int by = inputs.choice(parameter.c_str());
+  if (by == 0) return {};
+  return compose::constrained_faces(mesh, compose::ConstraintBy(by), inputs.point((parameter + "Min").c_str()),
+                                    inputs.point((parameter + "Max").c_str()), model, compose::Mark::Drop);
+}
+
 /// The options that Compose and Deform have in common.
 compose::ComposeOptions cut_options(const Inputs& inputs) {
   compose::ComposeOptions options;
   options.resolution = inputs.integer("Resolution");
-  options.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh;  // a 2 of older scripts: Mesh
+  options.cut = cut_of(inputs);
   options.smoothing = smoothing_of(inputs);
   return options;
 }
@@ -48,14 +59,21 @@ Box volume_of(const Inputs& inputs) {
   return Box(min, max);
 }
 
-void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress& progress) {
-  std::ostringstream grid;
-  grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
-  log_value(progress, "grid", grid.str());
-  log_value(progress, "voxel_size", r.voxel_size);
-  log_value(progress, "voxels_a", r.voxels_a);
-  log_value(progress, "voxels_b", r.voxels_b);
-  log_value(progress, "voxels_both", r.voxels_both);
+void log_report(const compose::ComposeReport& r, const Mesh& composed, cut::Cut cut, Progress& progress) {
+  if (cut == cut::Cut::Thesis) {
+    std::ostringstream grid;
+    grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
+    log_value(progress, "grid", grid.str());
+    log_value(progress, "voxel_size", r.voxel_size);
+    log_value(progress, "voxels_a", r.voxels_a);
+    log_value(progress, "voxels_b", r.voxels_b);
+    log_value(progress, "voxels_both", r.voxels_both);
+  } else {
+    log_value(progress, "scale", r.scale);
+    log_value(progress, "reach", r.reach);
+    log_value(progress, "crossing_segments", r.crossing_segments);
+    log_value(progress, "broken_ties", r.broken_ties);
+  }
   log_value(progress, "cut_cost", r.cut_cost);
   log_value(progress, "cut_seconds", r.cut_seconds);
   log_value(progress, "seam_length", r.seam_length);
@@ -69,6 +87,16 @@ void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress&
   log_value(progress, "reversed_b", r.reversed_b);
   log_value(progress, "faces", composed.face_count());
   log_value(progress, "seconds", r.seconds);
+}
+
+/// The objective J of the seam and its parts.
+void log_seam(const cut::SeamScore& s, Progress& progress) {
+  const double unit = cut::SeamScore::kLambda * s.scale * s.scale;
+  log_value(progress, "objective", s.total());
+  log_value(progress, "objective_gap", s.gap / unit);
+  log_value(progress, "objective_length", s.length / unit);
+  log_value(progress, "objective_turn", s.turn / unit);
+  log_value(progress, "objective_unfaced", s.unfaced / unit);
 }
 
 Outcome align_layer(const Inputs& inputs, Progress& progress) {
@@ -118,8 +146,14 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   cut::Part part_a{surface_of(a), {}}, part_b{surface_of(b), {}};
   part_a.keep = kept_faces(inputs, "KeepA", part_a.mesh, "model A");
   part_b.keep = kept_faces(inputs, "KeepB", part_b.mesh, "model B");
+  part_a.drop = dropped_faces(inputs, "DropA", part_a.mesh, "model A");
+  part_b.drop = dropped_faces(inputs, "DropB", part_b.mesh, "model B");
   compose::ComposeResult result = compose::compose(part_a, part_b, options, progress);
-  log_report(result.report, result.composed, progress);
+  log_report(result.report, result.composed, options.cut, progress);
+  log_seam(
+      cut::score_seam(cut::borders_of(part_a.mesh, result.clipped_a), cut::borders_of(part_b.mesh, result.clipped_b),
+                      std::min(cut::rms_size(part_a.mesh), cut::rms_size(part_b.mesh))),
+      progress);
   if (options.stitch && result.report.loops_joined + result.report.pieces_joined == 0)
     log_value(progress, "warning",
               "Nothing was stitched, as no border of one model faces one of the other; move the models farther into "
@@ -163,7 +197,7 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const std::string count = std::to_string(results.size());
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
-    log_report(results[i].report, results[i].composed, progress);
+    log_report(results[i].report, results[i].composed, options.cut, progress);
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     mesh::ResultRules rules;
     rules.moved = true;

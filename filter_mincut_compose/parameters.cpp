@@ -30,16 +30,28 @@ void add_constraint(const std::string& name, int by, const std::string& label, c
                        "Used when the choice above is Box: the corner with the largest x, y and z."));
 }
 
+/// A part that must go: none, or a choice of ConstraintBy but for the selected faces.
+void add_drop(const std::string& name, const std::string& label, const std::string& model,
+              std::vector<Parameter>& list) {
+  list.push_back(choice(name, 0, {"None", "Selected vertices", "Box"}, label,
+                        "How you mark what must go of " + model +
+                            ", where the cut would leave too much: the faces around its selected vertices, or those "
+                            "that a box touches. What is marked to be kept stays. For the cut Mesh."));
+  list.push_back(point(name + "Min", Vec3::Zero(), label + ": box, low corner",
+                       "Used when the choice above is Box: the corner with the smallest x, y and z."));
+  list.push_back(point(name + "Max", Vec3::Zero(), label + ": box, high corner",
+                       "Used when the choice above is Box: the corner with the largest x, y and z."));
+}
+
 /// What Compose and Deform have in common, in two places of their dialogs.
 void add_cut(std::vector<Parameter>& list) {
   const compose::ComposeOptions options;
   list.push_back(integer("Resolution", options.resolution, 0, 100000, "Resolution (voxels)",
-                         "Voxels along the longest side of the volume in which the models are joined. More make a "
-                         "finer seam and take longer. 0 chooses from the meshes and the free memory."));
-  list.push_back(choice("Cut", 0, {"Refined", "Thesis", "Mesh"}, "Cut",
-                        "Refined: a smooth border, kept away from places where only one model is (best for most). "
-                        "Thesis: the published weights as printed, borders along the sides of voxels. Mesh: a cut on "
-                        "the faces themselves, not available yet."));
+                         "Of the cut Thesis: voxels along the longest side of the volume in which the models are "
+                         "joined. 0 chooses from the meshes and the free memory."));
+  list.push_back(cut_choice(
+      "Mesh: the minimal cut on a graph of the models' own faces, smooth borders (best for most). Thesis: the "
+      "published weights as printed, through voxels, borders along their sides."));
 }
 
 }  // namespace
@@ -81,6 +93,8 @@ std::vector<Parameter> compose_parameters(const Scene& scene) {
   };
   add_constraint("KeepA", 0, "Keep of A", "what must survive of A", list);
   add_constraint("KeepB", 0, "Keep of B", "what must survive of B", list);
+  add_drop("DropA", "Drop of A", "A", list);
+  add_drop("DropB", "Drop of B", "B", list);
   list.push_back(choice("Volume", 0, {"Union of the bounding boxes", "Box"}, "Where to join",
                         "The part of space in which the cut may pass. Outside of it nothing is cut: what lies there is "
                         "kept or dropped as a whole, with the surface that it continues."));

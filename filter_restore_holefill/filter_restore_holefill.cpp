@@ -136,7 +136,7 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   o.fitting.refine = inputs.flag("Refine");
   o.fitting.allow_scale = inputs.flag("AllowScale");
   o.resolution = inputs.integer("Resolution");
-  o.cut = inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh;
+  o.cut = cut_of(inputs);
   o.smoothing = smoothing_of(inputs);
   o.fitting.fit_to_rim = inputs.flag("FitToRim");
   o.fitting.blend = inputs.integer("Blend");

@@ -73,10 +73,10 @@ std::vector<Parameter> mend_parameters(const Scene& scene, bool fill) {
   list.push_back(integer("Resolution", o.resolution, 0, 100000, "Resolution (voxels)",
                          "Of the cut Thesis: voxels along the longest side of the region. 0 chooses from the meshes "
                          "and the free memory."));
-  list.push_back(choice("Cut", 0, {"Refined", "Thesis", "Mesh"}, "Cut",
-                        "Refined and Mesh: the minimal cut on the faces of the scan; around a hole the whole scan is "
-                        "kept. Thesis: the published cut through voxels, with the constraints that the distance "
-                        "above gives."));
+  list.push_back(
+      cut_choice("Mesh: the minimal cut on the faces of the scan; around a hole the whole scan is "
+                 "kept. Thesis: the published cut through voxels, with the constraints that the distance "
+                 "above gives."));
   add_smoothing("two edges of the rim (two voxels with the cut Thesis)", list);
   list.push_back(flag("AddCandidate", false, "Add the model that was used",
                       "Adds the model that each region was mended with, as it was placed and fitted, hidden."));

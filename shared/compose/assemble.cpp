@@ -13,6 +13,7 @@ void assemble(const cut::Model& a, seam::Clipped clipped_a, const cut::Model& b,
   progress.stage("Stitching and smoothing", 75, 95);
   seam::Joined joined = seam::join_parts(a, clipped_a, b, clipped_b);
   ComposeReport& report = t.result.report;
+  report.seam_edge = measure.edge;
   report.loops_a = int(joined.loops_a.size()), report.loops_b = int(joined.loops_b.size());
   if (options.stitch) {
     t.flaws = seam::stitch_parts(joined, measure.max_gap, report);

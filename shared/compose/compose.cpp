@@ -43,6 +43,7 @@ Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume
                      Progress& progress) {
   Assembly t;
   progress.stage("Finding the minimal cut", 10, 60);
+  cut::check_volume(a, volume), cut::check_volume(b, volume);
   const cut::MeshCut cut = cut::cut_meshes(a, b, volume, options.threads, t.result.report, progress);
   progress.stage("Clipping", 60, 75);
   const double crumb = 1.5 * cut.edge;
@@ -177,6 +178,8 @@ ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const Co
                       Progress& progress) {
   const Clock clock;
   check(options);
+  if (options.cut == cut::Cut::Thesis && (!part_a.drop.empty() || !part_b.drop.empty()))
+    throw UserError("The cut Thesis knows no parts that must go; choose the cut Mesh, or mark none.");
   progress.stage("Preparing the models", 0, 10);
   cut::Model a = cut::make_model(part_a, part_a.name.empty() ? "model A" : part_a.name),
              b = cut::make_model(part_b, part_b.name.empty() ? "model B" : part_b.name);

@@ -2,7 +2,7 @@
 #include "parts/compose/constraint.h"
 
 #include "parts/base/error.h"
-#include "parts/cut/rasterize.h"
+#include "parts/cut/volume.h"
 #include "parts/spatial/triangle.h"
 
 namespace parts::compose {
@@ -19,21 +19,15 @@ void mark_nearest(const Mesh& mesh, const Vec3& point, std::vector<char>& keep) 
 }
 
 void mark_touching(const Mesh& mesh, const Box& box, std::vector<char>& keep) {
-  // The box as a unit cell, so that the voxel test serves; a flat box is one of a hair's thickness.
-  const Vec3 size = box.sizes().cwiseMax(1e-9 * box.sizes().maxCoeff());
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    if (!box.intersects(mesh.face_box(f))) continue;
-    std::array<Vec3, 3> p;
-    for (int k = 0; k < 3; ++k) p[k] = (mesh.corner(f, k) - box.min()).cwiseQuotient(size);
-    cut::TriangleBoxTest(p[0], p[1], p[2]).for_each_box({1, 1, 1}, [&](int, int, int) { keep[f] = 1; });
-  }
+  for (int f = 0; f < mesh.face_count(); ++f) keep[f] |= cut::touches(mesh, f, box);
 }
 
 }  // namespace
 
 std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec3& box_min, const Vec3& box_max,
-                                    const char* model) {
-  const std::string of = std::string(" of ") + model;
+                                    const char* model, Mark mark) {
+  const std::string of = std::string(" of ") + model, to = mark == Mark::Keep ? "to keep" : "to drop",
+                    must = mark == Mark::Keep ? "must survive" : "must go";
   if (mesh.faces.empty()) throw UserError("No face" + of + " exists; choose a layer that holds a triangle mesh.");
   std::vector<char> keep(mesh.faces.size(), 0);
   if (by == ConstraintBy::SelectedFaces) {
@@ -44,9 +38,9 @@ std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec
         for (int v : mesh.faces[f]) keep[f] |= mesh.vertex_selected[v];
   } else {
     if (!box_min.allFinite() || !box_max.allFinite())
-      throw UserError("The box to keep" + of + " is not finite; give its corners in world units.");
+      throw UserError("The box " + to + of + " is not finite; give its corners in world units.");
     if ((box_max - box_min).minCoeff() < 0)
-      throw UserError("The box to keep" + of +
+      throw UserError("The box " + to + of +
                       " is inside out; every coordinate of its Max must be at least that of its Min.");
     if (box_min == box_max)
       mark_nearest(mesh, box_min, keep);
@@ -55,11 +49,11 @@ std::vector<char> constrained_faces(const Mesh& mesh, ConstraintBy by, const Vec
   }
   if (std::find(keep.begin(), keep.end(), 1) == keep.end()) {
     if (by == ConstraintBy::SelectedFaces)
-      throw UserError("No face" + of + " is selected; select the faces that must survive, or give a box or a point.");
+      throw UserError("No face" + of + " is selected; select the faces that " + must + ", or give a box or a point.");
     if (by == ConstraintBy::SelectedVertices)
-      throw UserError("No vertex" + of +
-                      " with a face is selected; select the vertices that must survive, or give a box or a point.");
-    throw UserError("The box to keep" + of + " touches no face of it; move or enlarge the box.");
+      throw UserError("No vertex" + of + " with a face is selected; select the vertices that " + must +
+                      ", or give a box or a point.");
+    throw UserError("The box " + to + of + " touches no face of it; move or enlarge the box.");
   }
   return keep;
 }

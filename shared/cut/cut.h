@@ -20,6 +20,7 @@ struct CutReport {
   double reach = 0;            ///< Mesh: how far apart the models could be at the seam, world units
   long crossing_segments = 0;  ///< Mesh: of the curve in which the models cross
   long broken_ties = 0;        ///< Mesh: of those where only one model could be cut
+  double seam_edge = 0;        ///< world units: what the seam's edges are measured by, of Thesis a voxel
   double cut_cost = 0;         ///< in the cut's own unit
   double cut_seconds = 0;
 };

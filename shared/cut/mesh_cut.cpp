@@ -50,12 +50,37 @@ class MeshCutter {
     }
   }
 
-  bool cut_coarsely() {
+  /// @throws UserError  the marks contradict each other
+  void check_marks() const {
+    constexpr double kSame = 0.003;  // of S: nearer, kept faces that look the same way are one place
+    for (int x : {0, 1}) {
+      const std::vector<char>&keep = model_[x]->keep, &other = model_[1 - x]->keep;
+      double kept = 0, shared = 0;
+      for (int f = 0; f < mesh(x).face_count(); ++f) {
+        if (!keep[f]) continue;
+        const spatial::FaceTree::Hit hit = tree_[1 - x].nearest(mesh(x).center(f), kSame * scale());
+        kept += mesh(x).area(f);
+        if (hit.face >= 0 && other[hit.face] && mesh(x).normal(f).dot(mesh(1 - x).normal(hit.face)) > 0.9)
+          shared += mesh(x).area(f);
+      }
+      if (shared > 0.5 * kept)
+        throw UserError("What is to be kept of the two models lies in the same place; mark parts farther apart.");
+    }
+  }
+
+  /// @throws UserError  there is no cut
+  void cut_coarsely() {
     std::vector<char> near[2];
     for (int x : {0, 1}) near[x] = faces_near_other(x);
     prepare(marks_, near, kCoarseEdge);
     labels_ = choose_labels(problem_, kCoarseReach * scale(), 1, threads_);
-    return labels_.found;
+    if (labels_.found) return;
+    if (!labels_.possible)
+      throw UserError(
+          "What is to be kept and what must go cannot be parted: the models do not come near each other between them; "
+          "mark less, or move the models farther into each other.");
+    throw UserError(
+        "The models do not touch between what is to be kept of A and of B; move them closer until they overlap.");
   }
 
   /// Again around the seam found, with shorter edges. Leaves things as they are where that finds none.
@@ -73,6 +98,39 @@ class MeshCutter {
     if (labels_.found) return;
     problem_ = std::move(coarse), labels_ = std::move(labels);
     for (int x : {0, 1}) points_[x] = std::move(points[x]);
+  }
+
+  /// Components that hold no mark and that no seam parts (eyes in a head, a
+  /// button on a coat) go with what is nearest to them on their model.
+  void settle_isolated() {
+    for (int x : {0, 1}) {
+      const WorkMesh& w = problem_.side[x];
+      const mesh::Prepared& prepared = model_[x]->prepared;
+      const auto component = [&](int f) { return prepared.component[w.source[f]]; };
+      std::vector<Territory> label(prepared.components, 0);
+      std::vector<char> decided(prepared.components, 0);
+      for (int f = 0; f < w.mesh.face_count(); ++f) {
+        Territory& of_component = label[component(f)];
+        const Territory own = labels_.label[x][f];
+        if (marks_[x][w.source[f]] || (of_component && of_component != own)) decided[component(f)] = 1;
+        of_component = own;
+      }
+      Mesh known;
+      std::vector<int> number;
+      known.vertices = w.mesh.vertices;
+      for (int f = 0; f < w.mesh.face_count(); ++f)
+        if (decided[component(f)]) known.faces.push_back(w.mesh.faces[f]), number.push_back(f);
+      if (known.faces.empty() || known.faces.size() == w.mesh.faces.size()) continue;
+      const spatial::FaceTree tree(known);
+      std::vector<spatial::FaceTree::Hit> nearest(prepared.components);
+      for (int f = 0; f < w.mesh.face_count(); ++f)
+        if (spatial::FaceTree::Hit& best = nearest[component(f)]; !decided[component(f)])
+          if (const auto hit = tree.nearest(w.mesh.center(f), best.distance); hit.face >= 0) best = hit;
+      std::vector<Territory>& labels = labels_.label[x];
+      for (int f = 0; f < w.mesh.face_count(); ++f)
+        if (const auto& hit = nearest[component(f)]; !decided[component(f)] && hit.face >= 0)
+          labels[f] = labels[number[hit.face]];
+    }
   }
 
   MeshCut borders() {
@@ -322,11 +380,17 @@ MeshBorder MeshCutter::raw_border(int x) const {
   std::vector<char> kept(mesh(x).faces.size(), 0), dropped = kept, passed = kept;
   for (int f = 0; f < w.mesh.face_count(); ++f) (labels_.label[x][f] == own ? kept : dropped)[w.source[f]] = 1;
   for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
+  std::vector<char> used = points_of(x, passed);
+  for (std::size_t p = 0; p < used.size(); ++p) {  // what must stay whole has edges in common with what is passed
+    const SplitPoint& point = points_[x][p];
+    if (point.face < 0 && still_[x][point.edge[0]] && still_[x][point.edge[1]]) used[p] = 0;
+  }
   std::vector<SplitSegment> segments;
   for (const CrossingSegment& s : curve_.segments)
-    if (const int f = x ? s.face_b : s.face_a; passed[f]) segments.push_back({f, s.ends});
+    if (const int f = x ? s.face_b : s.face_a; passed[f] && used[s.ends[0]] && used[s.ends[1]])
+      segments.push_back({f, s.ends});
   MeshBorder border;
-  border.split = split_faces(mesh(x), points_[x], points_of(x, passed), segments);
+  border.split = split_faces(mesh(x), points_[x], used, segments);
   border.value.assign(border.split.mesh.vertices.size(), 0);
   const LabelOfPart label(w, labels_.label[x], passed);
   for (int f = 0; f < border.split.mesh.face_count(); ++f) {
@@ -343,12 +407,12 @@ MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, int thread
   const auto start = std::chrono::steady_clock::now();
   const auto cutter = std::make_shared<MeshCutter>(a, b, volume, threads);
   progress.at(0.2);
-  if (!cutter->cut_coarsely())
-    throw UserError(
-        "The models do not touch between what is to be kept of A and of B; move them closer until they overlap.");
+  cutter->check_marks();
+  cutter->cut_coarsely();
   progress.at(0.6);
   cutter->cut_finely();
-  progress.at(0.9);
+  cutter->settle_isolated();
+  progress.at(0.8);
   cutter->report(report);
   MeshCut cut = cutter->borders();
   cut.raw_border = [cutter](int side) { return cutter->raw_border(side); };

@@ -17,7 +17,16 @@ constexpr double kHiddenTie = 0.01;  // and where it is hidden
 constexpr double kOpposite = 0.3;    // to cut where what is nearest looks the other way, per length
 constexpr double kCoupling = 0.5;    // of its area: to part a face from what could replace it
 constexpr double kAgree = 0.2;       // the least cosine of what could replace it
+constexpr double kLayers = 0.1;      // how near faces are that lie over each other, twice or not at all
 constexpr double kFarthest = 0.4;    // the largest reach
+
+/// What a face's label is worth beside its counterpart's: how far the two could
+/// replace each other, 0..1.
+double agreement(const WorkMesh& mine, const WorkMesh& other, int f) {
+  const WorkMesh::Near& near = mine.face_near[f];
+  if (near.face < 0 || near.beside) return 0;
+  return std::max(0.0, (mine.normal[f].dot(other.normal[near.face]) - kAgree) / (1 - kAgree));
+}
 
 /// One minimal cut: the graph for a reach.
 class LabelGraph {
@@ -94,8 +103,7 @@ void LabelGraph::add_couplings(int x) {
   const WorkMesh &mine = p_.side[x], &other = p_.side[1 - x];
   for (int f = 0; f < mine.mesh.face_count(); ++f) {
     const WorkMesh::Near& near = mine.face_near[f];
-    if (near.face < 0 || near.beside || !(near.distance < reach_)) continue;
-    const double agree = (mine.normal[f].dot(other.normal[near.face]) - kAgree) / (1 - kAgree);
+    const double agree = near.distance < reach_ ? agreement(mine, other, f) : 0;
     if (agree > 0) arcs_.push_back({node(x, f), node(1 - x, near.face), capacity(kCoupling * mine.area[f] * agree)});
   }
 }
@@ -163,12 +171,29 @@ Borders label_borders(const WorkMesh& w, const std::vector<Territory>& label, Te
   return borders;
 }
 
-/// Fills objective and broken. Not the flow decides, as that pays for one-sided
+/// The area of faces that lie over each other and are both kept, or both
+/// dropped, less the farther apart: of a result in two layers, or with a hole.
+double doubled_area(const MeshProblem& p, const MeshLabels& labels) {
+  double sum = 0;
+  for (int x : {0, 1}) {
+    const WorkMesh &mine = p.side[x], &other = p.side[1 - x];
+    for (int f = 0; f < mine.mesh.face_count(); ++f) {
+      const WorkMesh::Near& near = mine.face_near[f];
+      if (near.face < 0 || labels.label[x][f] == labels.label[1 - x][near.face]) continue;
+      sum += mine.area[f] * agreement(mine, other, f) * std::max(0.0, 1 - near.distance / (kLayers * p.scale));
+    }
+  }
+  return sum;
+}
+
+/// Fills objective, doubled and broken. Not the flow decides, as that pays for one-sided
 /// seams by halves, but the seam that the labels make.
 void judge(const MeshProblem& p, MeshLabels& labels) {
   labels.objective = score_seam(label_borders(p.side[0], labels.label[0], kOfA),
                                 label_borders(p.side[1], labels.label[1], kOfB), p.scale)
                          .total();
+  labels.doubled = kCoupling * doubled_area(p, labels) / (SeamScore::kLambda * p.scale * p.scale);
+  labels.objective += labels.doubled;
   labels.broken = 0;
   for (const Tie& t : p.ties) {
     if (labels.label[0][t.a_outside] == labels.label[1][t.b_inside] &&
@@ -186,13 +211,17 @@ MeshLabels choose_labels(MeshProblem& problem, double reach, int more, int threa
   const auto attempt = [&](double at, bool curve_only) {
     MeshLabels labels;
     labels.reach = at;
-    if (!LabelGraph(problem, at, curve_only).solve(labels) || !any_seam(problem, labels)) return false;
+    if (!LabelGraph(problem, at, curve_only).solve(labels)) return false;
+    best.possible = labels.possible = true;
+    if (!any_seam(problem, labels)) return false;
     judge(problem, labels);
-    const bool holds = labels.broken == 0;
+    const bool holds = labels.broken == 0 && labels.doubled <= 0.5 * labels.objective;
     labels.found = true;
     if (!best.found || labels.objective < best.objective) best = std::move(labels);
     return holds || at >= 8 * best.reach;
   };
+  for (int x : {0, 1})
+    look_nearby(problem.side[x], problem.side[1 - x], std::max(reach, kLayers * problem.scale), threads);
   if (!problem.ties.empty()) attempt(reach, true);
   for (int enough = 0; reach <= kFarthest * problem.scale && enough <= more; reach *= 2) {
     for (int x : {0, 1}) look_nearby(problem.side[x], problem.side[1 - x], reach, threads);

@@ -31,13 +31,15 @@ struct MeshLabels {
   std::vector<Territory> label[2];  ///< per face of A's, of B's work mesh
   double reach = 0;                 ///< world units; how far the models could be apart
   double objective = 0;             ///< what it is chosen by, in units of SeamScore::total()
-  long broken = 0;                  ///< ties that do not hold
+  double doubled = 0;  ///< what of it pays for faces that lie over each other and are both kept or both dropped
+  long broken = 0;     ///< ties that do not hold
   bool found = false;
+  bool possible = false;  ///< some cut obeys all marks, if without a seam
 };
 
 /// The best of the minimal cuts at growing reaches, from `reach` on.
-/// @param more  how many to try beyond the first that breaks no tie
-/// @return found = false where no cut parts the marks
+/// @param more  how many to try beyond the first that breaks no tie and leaves no layer twice
+/// @return found = false where the models do not meet between the marks
 MeshLabels choose_labels(MeshProblem& problem, double reach, int more, int threads);
 
 }  // namespace parts::cut

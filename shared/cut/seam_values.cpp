@@ -107,8 +107,9 @@ void Smoother::fix_values(int x) {
   std::vector<double>& value = out_.value[x];
   std::vector<double> weight(w.mesh.vertices.size(), 0);
   value.assign(w.mesh.vertices.size(), 0), fixed_[x].assign(w.mesh.vertices.size(), 0);
+  const double hair = 1e-12 * p_.scale * p_.scale;  // faces without area have a say where there are no others
   for (int f = 0; f < w.mesh.face_count(); ++f)
-    for (int v : w.mesh.faces[f]) value[v] += label[f] * (w.area[f] + 1e-30), weight[v] += w.area[f] + 1e-30;
+    for (int v : w.mesh.faces[f]) value[v] += label[f] * (w.area[f] + hair), weight[v] += w.area[f] + hair;
   for (std::size_t v = 0; v < value.size(); ++v) value[v] = weight[v] > 0 ? value[v] / weight[v] : x ? 1 : -1;
   // What is kept has the last word.
   const Territory own = x ? kOfB : kOfA;

@@ -123,6 +123,28 @@ Box transition_volume(const Model& a, const Model& b, const Box& asked) {
   return used;
 }
 
+bool touches(const Mesh& mesh, int face, const Box& box) {
+  if (!box.intersects(mesh.face_box(face))) return false;
+  // The box as a unit cell, so that the voxel test serves.
+  const Vec3 size = box.sizes().cwiseMax(1e-9 * box.sizes().maxCoeff());
+  std::array<Vec3, 3> p;
+  for (int k = 0; k < 3; ++k) p[k] = (mesh.corner(face, k) - box.min()).cwiseQuotient(size);
+  bool any = false;
+  TriangleBoxTest(p[0], p[1], p[2]).for_each_box({1, 1, 1}, [&](int, int, int) { any = true; });
+  return any;
+}
+
+void check_volume(const Model& model, const Box& volume) {
+  bool in_it = false, kept_in_it = false;
+  for (int f = 0; f < model.prepared.mesh.face_count() && !kept_in_it; ++f)
+    if ((model.keep[f] || !in_it) && touches(model.prepared.mesh, f, volume))
+      in_it = true, kept_in_it = kept_in_it || model.keep[f];
+  if (!in_it) throw UserError("The volume misses " + model.name + "; move the volume to where both models are.");
+  if (!kept_in_it)
+    throw UserError("What is to be kept of " + model.name +
+                    " lies outside the volume; enlarge the volume or mark a part inside it.");
+}
+
 int natural_resolution(const Model& a, const Model& b, const Box& volume) {
   // The edge of an equilateral triangle of the mean area, over what lies in the volume.
   double surface = 0, faces = 0;

@@ -34,6 +34,12 @@ Model make_model(const Part& part, const std::string& name);
 /// @throws UserError  it has no thickness, is not finite, or misses a model
 Box transition_volume(const Model& a, const Model& b, const Box& asked);
 
+/// Whether a face has a point in common with a box that is no thinner than a hair.
+bool touches(const Mesh& mesh, int face, const Box& box);
+
+/// @throws UserError  a model, or what is to be kept of it, has no face in the volume
+void check_volume(const Model& model, const Box& volume);
+
 /// Voxels along the longest side from the meshes' mean edge.
 int natural_resolution(const Model& a, const Model& b, const Box& volume);
 

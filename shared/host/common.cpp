@@ -53,6 +53,14 @@ seam::SeamSmoothing smoothing_of(const Inputs& inputs) {
   return {inputs.integer("SmoothIterations"), inputs.length("SmoothDistance"), inputs.number("SmoothWeight")};
 }
 
+Parameter cut_choice(std::string help) {
+  Parameter cut = choice("Cut", 0, {"Mesh", "Thesis"}, "Cut", std::move(help));
+  cut.max = 2;  // older scripts had a third choice, which means the first now
+  return cut;
+}
+
+cut::Cut cut_of(const Inputs& inputs) { return inputs.choice("Cut") == 1 ? cut::Cut::Thesis : cut::Cut::Mesh; }
+
 std::vector<int> parse_patch_sizes(const std::string& text) {
   std::vector<int> sizes;
   std::istringstream stream(text);

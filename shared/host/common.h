@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "parts/cut/cut.h"
 #include "parts/host/filter.h"
 #include "parts/io/class_preset.h"
 #include "parts/seam/seam.h"
@@ -24,6 +25,10 @@ void add_box(const std::string& name, const std::string& label, const Box& box, 
 /// SmoothIterations, SmoothDistance and SmoothWeight. @param zero  what a distance of 0 means
 void add_smoothing(const std::string& zero, std::vector<Parameter>& list);
 seam::SeamSmoothing smoothing_of(const Inputs& inputs);
+
+/// The choice Cut.
+Parameter cut_choice(std::string help);
+cut::Cut cut_of(const Inputs& inputs);
 
 /// Sides of patches, coarse to fine. @throws UserError  text is no list of whole numbers
 std::vector<int> parse_patch_sizes(const std::string& text);

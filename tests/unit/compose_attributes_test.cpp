@@ -35,7 +35,7 @@ TEST(ComposeAttributes, TravelWithTheirFaces) {
   ASSERT_EQ(m.wedges.size(), m.faces.size());
   EXPECT_EQ(m.textures, (std::vector<std::string>{"a.png", "b.png"}));
   int bad_quality = 0, bad_uv = 0, bad_color = 0, bad_normal = 0, of[2] = {0, 0};
-  const double near = 2 * r.report.voxel_size;
+  const double near = 2 * r.report.seam_edge;
   for (int f = 0; f < m.face_count(); ++f) {
     const bool seam =
         m.face_box(f).exteriorDistance(Vec3(0.5, m.face_box(f).center().y(), m.face_box(f).center().z())) < 2 * near;

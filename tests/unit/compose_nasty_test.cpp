@@ -53,8 +53,10 @@ TEST(ComposeErrors, Constraints) {
   // Both constraints in one place.
   cut::Part same = a;
   same.keep = a.keep;
-  EXPECT_TRUE(has(sentence_of(a, same), "same voxel"));
+  EXPECT_TRUE(has(sentence_of(a, same), "same place"));
   compose::ComposeOptions options;
+  options.cut = cut::Cut::Thesis;
+  EXPECT_TRUE(has(sentence_of(a, same, options), "same voxel"));
   options.resolution = 30;
   EXPECT_TRUE(has(sentence_of(a, same, options), "same voxel"));
 }
@@ -88,7 +90,7 @@ TEST(ComposeErrors, Options) {
   EXPECT_TRUE(has(with([](auto& o) { o.smoothing.distance = -1; }), "SmoothDistance"));
   EXPECT_TRUE(has(with([](auto& o) { o.smoothing.distance = kInfinity; }), "SmoothDistance"));
   for (const int resolution : {20000, 2000000, std::numeric_limits<int>::max()}) {
-    const std::string s = with([&](auto& o) { o.resolution = resolution; });
+    const std::string s = with([&](auto& o) { o.resolution = resolution, o.cut = cut::Cut::Thesis; });
     EXPECT_TRUE(has(s, "GB of memory")) << s;
   }
 }

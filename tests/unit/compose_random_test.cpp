@@ -30,7 +30,7 @@ void compose_random_scenes(cut::Cut cut, unsigned from, unsigned to, Tally& tall
     EXPECT_EQ(missing_faces(r, a, b), 0) << what;
     EXPECT_EQ(r.report.loops_open, 0) << what;
     // Crossed faces are split, and their neighbours at the same edges.
-    const double near = 8 * r.report.voxel_size + 2 * std::max(longest_edge(a.mesh), longest_edge(b.mesh));
+    const double near = 8 * r.report.seam_edge + 2 * std::max(longest_edge(a.mesh), longest_edge(b.mesh));
     EXPECT_EQ(changed_far_faces(r, a.mesh, b.mesh, near), 0) << what;
     // Every component that the cut makes ends at a contour, joined or capped.
     EXPECT_LE(mesh::check(r.composed).components, 2 + r.report.loops_a + r.report.loops_b) << what;
@@ -40,7 +40,7 @@ void compose_random_scenes(cut::Cut cut, unsigned from, unsigned to, Tally& tall
   }
 }
 
-TEST(ComposeRandom, RefinedKeepsItsPromises) {
+TEST(ComposeRandom, MeshKeepsItsPromises) {
   Tally tally;
   compose_random_scenes(cut::Cut::Mesh, 0, 70, tally);
   RecordProperty("without_new_self_intersections", tally.clean);

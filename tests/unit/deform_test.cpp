@@ -113,7 +113,7 @@ TEST(Deform, CancelsBetweenFrames) {
   compose::RigidPose pose;
   pose.angle = 30;
   int calls = 0;
-  Progress progress([&](int, const char*) { return ++calls < 25; });
+  Progress progress([&](int, const char*) { return ++calls < 4; });
   EXPECT_THROW(compose::deform(a.mesh, a.fixed, a.moving, pose, 6, {}, progress), Cancelled);
   int last = 0;
   Progress forward([&](int percent, const char*) {
