@@ -323,6 +323,17 @@ TEST_F(HostPlugin, AResultThatIsNoMeshIsNeverAdded) {
       "input.");
 }
 
+TEST_F(HostPlugin, NoLayerIsPlacedWhereNothingIs) {
+  next = [](const Inputs& in, Progress&) {
+    Outcome out;
+    out.placed = {{in.layer("A"), Eigen::Matrix4d::Constant(NAN), true}};
+    return out;
+  };
+  expect_failure(
+      "The filter met an internal error (a matrix that is not finite); nothing was changed, please report it with the "
+      "input.");
+}
+
 TEST_F(HostPlugin, SizesThatCannotBeComputedWithAreRefusedAtTheDoor) {
   next = [](const Inputs& in, Progress&) {
     in.length("Length"), in.point("Point"), in.layer("A").mesh();
