@@ -72,13 +72,13 @@ Input read(const Inputs& inputs, Progress& progress) {
 }
 
 /// The file that the mesh names as its texture.
-std::string texture_of(const Input& in, const Inputs& inputs) {
+std::string texture_of(const Input& in, const Inputs& inputs, OutputFiles& files) {
   render::TextureTarget target{inputs.text("TextureFile"),
                                inputs.text("Depth"),
                                {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
   if (target.file.empty() && render::shows_as_texture(in.image_file, in.image))
     return std::filesystem::absolute(in.image_file).lexically_normal().string();
-  return render::write_texture(in.image.color, in.image.mask, target);
+  return render::add_texture(files, in.image.color, in.image.mask, target);
 }
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
@@ -91,18 +91,20 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   progress.stage("Texture", 95, 100);
 
   Outcome outcome;
+  OutputFiles files;
   render::Camera seen = camera;
   if (in.image_file.empty()) {
     result.mesh.wedges.clear();
   } else {
     const double finer = double(in.image.color.cols) / in.depth.cols;
     seen = render::raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
-    result.mesh.textures = {texture_of(in, inputs)};
+    result.mesh.textures = {texture_of(in, inputs, files)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();
     outcome.rasters.push_back(
         {std::filesystem::path(in.image_file).filename().string(), result.mesh.textures[0], seen, distance});
   }
+  files.commit();
   log_value(progress, "width", in.depth.cols);
   log_value(progress, "height", in.depth.rows);
   log_value(progress, "max_jump", result.max_jump);

@@ -7,7 +7,7 @@
 
 #include "parts/base/error.h"
 #include "parts/examples/examples.h"
-#include "parts/io/image_size.h"
+#include "parts/io/image_head.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/mlp_camera.h"
@@ -116,7 +116,7 @@ class StoredExamples : public ExampleSource {
       if (!fs::is_regular_file(plane.file, error))
         throw UserError("The file \"" + plane.file + "\" of the database \"" + path_ +
                         "\" is missing; put it back, or build the database again.");
-      if (const std::optional<io::ImageHead> head = io::read_image_head(plane.file))
+      if (const std::optional<io::ImageHead> head = io::read_image_head(InputFile(plane.file)))
         check_size(plane.file, {int(std::min(head->width, 1e9)), int(std::min(head->height, 1e9))});
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +17,9 @@ namespace parts::search {
 /// model). A file counts only if it was made by this version of the code for a
 /// model file of that size, time, content (a sample of it) and matrix, and is
 /// whole: anything else is made anew. Files are replaced at once (rename), so
-/// that runs at the same time do each other no harm.
+/// that runs at the same time do each other no harm. A run that makes files takes
+/// away those of models that are gone from a folder, and those that no run has
+/// used for thirty days.
 class ModelCache {
  public:
   struct Options {
@@ -52,6 +55,8 @@ class ModelCache {
 
  private:
   std::string file(int model) const;
+  bool is_orphan(const std::filesystem::path& entry) const;
+  void prune() const;
   Key key(int model) const;
   std::unique_ptr<ModelRaster> read(int model) const;
   bool write(int model, const ModelRaster& raster, const Key& key) const;

@@ -2,9 +2,12 @@
 #include "parts/search/model_cache.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -160,6 +163,45 @@ TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("cache: ", 0) == 0; }),
             2);
   EXPECT_EQ(contents(folder_ / ".model-cache"), "a file in its place");
+}
+
+TEST_F(Cache, WhatIsNoLongerUsedGoes) {
+  fill();
+  const auto now = fs::file_time_type::clock::now();
+  fs::remove(folder_ / "m0.ply");
+  EXPECT_EQ(fill(), 0);
+  EXPECT_EQ(file_count(), 3) << "a run that makes nothing takes nothing away";
+  const fs::path cache = folder_ / ".model-cache";
+  const std::string other = "moved.ply.0123456789abcdef", mine = "notes.txt", draft = ".parts-0123456789abcdef.draft";
+  for (const std::string& name : {other, mine, draft}) {
+    std::ofstream(cache / name) << "x";
+    fs::last_write_time(cache / name, now - std::chrono::hours(24 * 40));
+  }
+  put("m3.ply", 3);
+  fs::last_write_time(file(2), now - std::chrono::hours(24 * 40));
+  EXPECT_EQ(fill(), 1);
+  EXPECT_EQ(file_count(), 4) << "m1, m2, m3 and the user's notes";
+  EXPECT_TRUE(fs::exists(cache / mine));
+  EXPECT_FALSE(fs::exists(cache / other));
+  EXPECT_FALSE(fs::exists(cache / draft));
+  for (const auto& entry : fs::directory_iterator(cache))
+    if (entry.path().filename() != mine) {
+      EXPECT_LT(now - entry.last_write_time(), std::chrono::hours(1)) << "used today";
+    }
+}
+
+TEST_F(Cache, OnlyRegularFilesAreOpened) {
+  fill();
+  fs::remove(file(0));
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.ply").c_str(), 0600), 0);
+  EXPECT_EQ(fill(), 1) << "the pipe is skipped";
+  EXPECT_EQ(std::count_if(log_.begin(), log_.end(),
+                          [](const std::string& l) { return l.rfind("skipped: pipe.ply", 0) == 0; }),
+            1);
+  const fs::path entry = file(0);
+  fs::remove(entry);
+  ASSERT_EQ(::mkfifo(entry.c_str(), 0600), 0);
+  EXPECT_EQ(fill(), 1);
 }
 
 TEST_F(Cache, CanBeTurnedOff) {
