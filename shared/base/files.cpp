@@ -238,6 +238,7 @@ void OutputFiles::flush() const {
 /// What was there before stays under another name until all are in place.
 void OutputFiles::place(Draft& d) {
   struct stat old {};
+  if (!may_be_replaced(d.path)) throw unwritable(d.path, d.what);
   if (drafts_.size() > 1 && ::lstat(d.path.c_str(), &old) == 0) {
     const fs::path before = folder_of(d.path) / random_name();
     if (::link(d.path.c_str(), before.c_str()) == 0 || ::rename(d.path.c_str(), before.c_str()) == 0)
@@ -245,7 +246,7 @@ void OutputFiles::place(Draft& d) {
     else
       throw unwritable(d.path, d.what);
   }
-  if (!may_be_replaced(d.path) || ::rename(d.draft.c_str(), d.path.c_str()) != 0) throw unwritable(d.path, d.what);
+  if (::rename(d.draft.c_str(), d.path.c_str()) != 0) throw unwritable(d.path, d.what);
   d.placed = true;
 }
 
