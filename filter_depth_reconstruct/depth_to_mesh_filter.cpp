@@ -5,6 +5,7 @@
 
 #include "filters.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/depth_mesh.h"
 #include "parts/render/texture.h"
@@ -49,6 +50,24 @@ struct Input {
   io::Image image;
 };
 
+bool same_proportions(cv::Size a, cv::Size b) {
+  const double skew = std::abs(double(a.width) * b.height - double(a.height) * b.width);
+  return skew <= std::max({a.width, a.height, b.width, b.height});
+}
+
+/// A photograph says how the camera was held and a depth raster does not: rows and
+/// columns as they are stored belong together, unless only the upright ones fit.
+io::Image image_for(const std::string& file, cv::Size depth, Progress& progress) {
+  io::Image image = io::read_image(file, io::Turn::AsStored);
+  if (image.orientation == 1) return image;
+  const bool turn = !same_proportions(image.color.size(), depth);
+  if (turn) image = io::read_image(file);
+  log_value(progress, "image_orientation",
+            std::to_string(image.orientation) +
+                (turn ? " (turned upright, as the depth raster is)" : " (not turned, as the depth raster is not)"));
+  return image;
+}
+
 Input read(const Inputs& inputs, Progress& progress) {
   const std::string depth = inputs.text("Depth"), back = inputs.text("BackDepth");
   const double scale = inputs.number("DepthScale");
@@ -61,10 +80,9 @@ Input read(const Inputs& inputs, Progress& progress) {
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;
   progress.at(0.5);
-  in.image = io::read_image(in.image_file);
+  in.image = image_for(in.image_file, in.depth.size(), progress);
   const cv::Size d = in.depth.size(), i = in.image.color.size();
-  const double skew = std::abs(double(i.width) * d.height - double(i.height) * d.width);
-  if (skew > std::max({i.width, i.height, d.width, d.height}))
+  if (!same_proportions(i, d))
     throw UserError("The image has " + std::to_string(i.width) + " x " + std::to_string(i.height) +
                     " pixels and the depth raster " + std::to_string(d.width) + " x " + std::to_string(d.height) +
                     "; give an image of the same view, with the same proportions.");

@@ -7,6 +7,7 @@
 
 #include "parts/base/error.h"
 #include "parts/base/parallel.h"
+#include "parts/render/surface_color.h"
 
 namespace parts::examples {
 namespace {

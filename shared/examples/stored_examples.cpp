@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A mapping database: rasters of a MeshLab project.
+#include "parts/examples/stored_examples.h"
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include "parts/base/error.h"
-#include "parts/examples/examples.h"
 #include "parts/io/image_head.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"

@@ -12,6 +12,7 @@
 #include "parts/base/error.h"
 #include "parts/examples/build_mappings.h"
 #include "parts/examples/examples.h"
+#include "parts/examples/stored_examples.h"
 #include "parts/io/class_preset.h"
 #include "parts/io/mesh_io.h"
 #include "parts/io/mlp_project.h"
