@@ -12,6 +12,7 @@ build_packages=(
 run_packages=(xvfb libgl1-mesa-dri python3 python3-numpy python3-pil libcgal-demo)
 bench_packages=(libcgal-dev)
 format_packages=(clang-format-14)
+fuzz_packages=(clang-14)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

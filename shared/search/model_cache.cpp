@@ -3,8 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
-#include <cstring>
 #include <set>
 
 #include "parts/base/files.h"
@@ -16,40 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Changes with everything that changes what a file holds.
-constexpr char kMagic[8] = {'r', 'a', 's', 't', 'e', 'r', '0', '1'};
 constexpr std::uint64_t kLargest = std::uint64_t(1) << 30;  // bytes of a file
 constexpr std::size_t kNameLength = 80, kHashDigits = 16;   // of a file's name
 constexpr auto kDay = std::chrono::hours(24), kUnused = 30 * kDay;
-constexpr std::size_t kHead = sizeof kMagic + sizeof(ModelCache::Key) + 2 * sizeof(std::uint64_t);
-
-/// FNV-1a, eight bytes at a time: against damage, not against malice.
-class Hash {
- public:
-  void add(const void* data, std::size_t n) {
-    const char* bytes = static_cast<const char*>(data);
-    for (; n >= 8; n -= 8, bytes += 8) {
-      std::uint64_t word;
-      std::memcpy(&word, bytes, 8);
-      mix(word);
-    }
-    for (; n > 0; --n, ++bytes) mix(static_cast<unsigned char>(*bytes));
-  }
-  std::uint64_t value() const { return state_; }
-
- private:
-  void mix(std::uint64_t word) {
-    state_ = (state_ ^ word) * 0x100000001b3ull;
-    state_ ^= state_ >> 29;
-  }
-  std::uint64_t state_ = 0xcbf29ce484222325ull;
-};
-
-std::uint64_t hash_of(const std::string& text) {
-  Hash h;
-  h.add(text.data(), text.size());
-  return h.value();
-}
 
 /// Of the whole of a small file, of 16 pieces of a large one: two scans of the
 /// same size and time, put in each other's place, differ everywhere.
@@ -66,45 +33,6 @@ std::uint64_t content_hash(const std::string& path, std::uint64_t size) {
   return h.value();
 }
 
-template <class T>
-void append(std::string& bytes, const T* data, std::size_t n) {
-  bytes.append(reinterpret_cast<const char*>(data), n * sizeof(T));
-}
-
-/// Takes values off the front of bytes; once they run out, everything is 0 and good() false.
-class Taker {
- public:
-  Taker(const std::string& bytes, std::size_t from) : bytes_(bytes), at_(from) {}
-  template <class T>
-  void take(T* data, std::size_t n) {
-    std::memset(static_cast<void*>(data), 0, n * sizeof(T));
-    if (!good_ || n > (bytes_.size() - at_) / sizeof(T)) return void(good_ = false);
-    std::memcpy(static_cast<void*>(data), bytes_.data() + at_, n * sizeof(T));
-    at_ += n * sizeof(T);
-  }
-  bool good() const { return good_; }
-  bool done() const { return good_ && at_ == bytes_.size(); }
-  std::size_t left() const { return bytes_.size() - at_; }
-
- private:
-  const std::string& bytes_;
-  std::size_t at_;
-  bool good_ = true;
-};
-
-bool sound(const ModelRaster& r) {
-  if (!r.origin.allFinite() || !(r.size > 0) || !(r.area > 0) || !std::isfinite(r.size) || !std::isfinite(r.area))
-    return false;
-  for (const RasterPoint& p : r.samples)
-    if (!p.at.allFinite() || !p.normal.allFinite()) return false;
-  for (const RasterLevel& l : r.levels) {
-    if (!l.low.allFinite() || !(l.cell > 0) || !std::isfinite(l.cell)) return false;
-    for (std::uint16_t s : l.nearest)
-      if (s >= r.samples.size() && (s != RasterLevel::kFar || &l == &r.levels[0])) return false;
-  }
-  return true;
-}
-
 /// NAME.0123456789abcdef, as file() makes them.
 bool is_entry_name(const std::string& name) {
   const std::size_t dot = name.rfind('.');
@@ -113,62 +41,6 @@ bool is_entry_name(const std::string& name) {
 }
 
 }  // namespace
-
-std::string ModelCache::encode(const ModelRaster& r, const Key& key) {
-  std::string body;
-  append(body, r.origin.data(), 3);
-  append(body, &r.size, 1);
-  append(body, &r.area, 1);
-  const std::uint64_t counts[2] = {r.samples.size(), r.levels.size()};
-  append(body, counts, 2);
-  append(body, r.samples.data(), r.samples.size());
-  for (const RasterLevel& l : r.levels) {
-    append(body, l.low.data(), 3);
-    append(body, &l.cell, 1);
-    append(body, l.dims.data(), 3);
-    append(body, l.nearest.data(), l.nearest.size());
-  }
-  std::string bytes(kMagic, sizeof kMagic);
-  append(bytes, &key, 1);
-  const std::uint64_t seal[2] = {body.size(), hash_of(body)};
-  append(bytes, seal, 2);
-  return bytes + body;
-}
-
-std::unique_ptr<ModelRaster> ModelCache::decode(const std::string& bytes, const Key& key) {
-  Taker in(bytes, 0);
-  char magic[sizeof kMagic];
-  Key found;
-  std::uint64_t seal[2], counts[2];
-  in.take(magic, sizeof magic);
-  in.take(&found, 1);
-  in.take(seal, 2);
-  if (!in.good() || std::memcmp(magic, kMagic, sizeof magic) != 0 || !(found == key) || seal[0] != in.left()) return {};
-  if (seal[1] != hash_of(bytes.substr(kHead))) return {};
-  auto r = std::make_unique<ModelRaster>();
-  in.take(r->origin.data(), 3);
-  in.take(&r->size, 1);
-  in.take(&r->area, 1);
-  in.take(counts, 2);
-  if (counts[0] == 0 || counts[0] >= RasterLevel::kFar || counts[1] != key.levels || counts[1] == 0 || counts[1] > 8)
-    return {};
-  r->samples.resize(counts[0]);
-  in.take(r->samples.data(), r->samples.size());
-  r->levels.resize(counts[1]);
-  for (RasterLevel& l : r->levels) {
-    in.take(l.low.data(), 3);
-    in.take(&l.cell, 1);
-    in.take(l.dims.data(), 3);
-    for (int d : l.dims)
-      if (d < 1 || d > 1024) return {};
-    const std::size_t voxels = std::size_t(l.dims[0]) * l.dims[1] * l.dims[2];
-    if (voxels > in.left()) return {};
-    l.nearest.resize(voxels);
-    in.take(l.nearest.data(), voxels);
-  }
-  if (!in.done() || !sound(*r)) return {};
-  return r;
-}
 
 ModelCache::ModelCache(const io::ModelDatabase& database, const Options& options)
     : database_(database), options_(options) {
@@ -200,8 +72,8 @@ std::string ModelCache::file(int model) const {
   return (fs::path(folder_) / (name + unique)).string();
 }
 
-ModelCache::Key ModelCache::key(int model) const {
-  Key k;
+RasterKey ModelCache::key(int model) const {
+  RasterKey k;
   std::error_code error;
   k.size = std::uint64_t(fs::file_size(database_.file(model), error));
   k.time = std::uint64_t(fs::last_write_time(database_.file(model), error).time_since_epoch().count());
@@ -223,21 +95,21 @@ std::unique_ptr<ModelRaster> ModelCache::read(int model) const {
   std::string bytes;
   try {
     const InputFile stored(path);
-    if (stored.size() < kHead || stored.size() > kLargest) return {};
+    if (stored.size() > kLargest) return {};
     bytes = stored.read_all();
   } catch (const UserError&) {
     return {};
   }
-  auto raster = decode(bytes, key(model));
+  auto raster = decode_raster(bytes, key(model));
   const auto now = fs::file_time_type::clock::now();
   if (raster && now - fs::last_write_time(path, error) > kDay) fs::last_write_time(path, now, error);  // it was used
   return raster;
 }
 
-bool ModelCache::write(int model, const ModelRaster& raster, const Key& key) const {
+bool ModelCache::write(int model, const ModelRaster& raster, const RasterKey& key) const {
   std::error_code error;
   fs::create_directories(folder_, error);
-  return write_cache_file(file(model), encode(raster, key));
+  return write_cache_file(file(model), encode_raster(raster, key));
 }
 
 void ModelCache::prune() const {
@@ -269,7 +141,7 @@ void ModelCache::fill(Progress& progress) {
     std::unique_ptr<ModelRaster>& r = rasters_[std::size_t(i)];
     r = read(i);
     if (!r) try {
-        const Key before = key(i);  // a model that is changed meanwhile must not look up to date
+        const RasterKey before = key(i);  // a model that is changed meanwhile must not look up to date
         r = std::make_unique<ModelRaster>(rasterize_model(database_.load(i, poll), options_.levels));
         ++made;
         if (options_.files && written && !write(i, *r, before)) written = false;

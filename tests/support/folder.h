@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <string>
@@ -13,6 +15,16 @@
 #include "parts/base/error.h"
 
 namespace parts::test {
+
+/// Where $PARTS_CORPUS names a folder, small files that tests read are kept there
+/// for the fuzzers, by the reader (tests/fuzz/CMakeLists.txt).
+inline void keep_for_corpus(const std::string& reader, const std::string& bytes) {
+  const char* corpus = std::getenv("PARTS_CORPUS");
+  if (!corpus || bytes.size() > 65536) return;
+  const std::filesystem::path folder = std::filesystem::path(corpus) / reader;
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / std::to_string(std::hash<std::string>()(bytes)), std::ios::binary) << bytes;
+}
 
 /// A test with an empty folder of its own.
 struct Folder : testing::Test {

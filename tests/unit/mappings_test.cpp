@@ -19,6 +19,7 @@
 #include "parts/io/raster_io.h"
 #include "parts/render/mlp_camera.h"
 #include "support/cameras.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -26,18 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace parts::test;
-
-template <class Call>
-std::string sentence(const Call& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    EXPECT_EQ(std::string(e.what()).back(), '.');
-    return e.what();
-  }
-  ADD_FAILURE() << "no UserError";
-  return {};
-}
 
 bool same(const cv::Mat& a, const cv::Mat& b) {  // bit for bit but for the bits of NaN
   if (a.size() != b.size() || a.type() != b.type()) return false;
@@ -294,6 +283,7 @@ TEST_F(Mappings, PresetsThatBreakAParser) {
        {std::string("<?xml version="), "{\"a\":" + deep, deep, pairs, std::string("{\"a\": 1e999}"), std::string("[1]"),
         std::string(), "{\"a\":" + std::string(40, '[') + std::string(40, ']') + "}"}) {
     EXPECT_FALSE(io::parse_class_preset(text)) << text.substr(0, 30);
+    keep_for_corpus("json", text);
     std::ofstream(folder / "models/class.json") << text;
     EXPECT_NE(sentence([&] { io::read_class_preset(at("models")); }).find("The class preset"), std::string::npos);
   }

@@ -15,6 +15,7 @@
 #include "parts/base/error.h"
 #include "parts/mesh/arrays.h"
 #include "parts/mesh/topology.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -29,10 +30,17 @@ class MeshIo : public ::testing::Test {
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (const std::string ending = lower_extension(entry.path()); entry.is_regular_file() && !ending.empty())
+        if (entry.file_size() < 65536) test::keep_for_corpus(ending.substr(1), test::contents(entry.path()));
+    fs::remove_all(folder_);
+  }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   std::string file(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
+    if (const std::string ending = lower_extension(name); !ending.empty())
+      test::keep_for_corpus(ending.substr(1), bytes);
     return path(name);
   }
   Mesh read(const std::string& name, const std::string& bytes) const { return io::read_mesh(file(name, bytes)); }

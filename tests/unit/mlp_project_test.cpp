@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "parts/base/error.h"
+#include "support/folder.h"
 
 namespace parts {
 namespace {
@@ -22,10 +23,15 @@ class MlpProjectFile : public ::testing::Test {
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    for (const char* name : {"p.mlp", "q.mlp"})
+      if (fs::exists(path(name))) test::keep_for_corpus("mlp", test::contents(path(name)));
+    fs::remove_all(folder_);
+  }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   io::MlpProject read(const std::string& text) const {
     std::ofstream(path("p.mlp"), std::ios::binary) << text;
+    test::keep_for_corpus("mlp", text);
     return io::read_mlp(path("p.mlp"));
   }
   std::string sentence(const std::string& text) const {

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "parts/io/mesh_io.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -20,14 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string contents(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::contents;
 
 bool same(const search::ModelRaster& a, const search::ModelRaster& b) {
-  const search::ModelCache::Key key{1, 2, 3, 4, a.levels.size()};
-  return search::ModelCache::encode(a, key) == search::ModelCache::encode(b, key);
+  const search::RasterKey key{1, 2, 3, 4, a.levels.size()};
+  return search::encode_raster(a, key) == search::encode_raster(b, key);
 }
 
 class Cache : public ::testing::Test {
@@ -137,12 +135,12 @@ TEST_F(Cache, NeverTrustsADamagedFile) {
 TEST_F(Cache, ChecksWhatAForgedFileHolds) {
   fill();
   const search::ModelRaster& good = *cache_->raster(0);
-  const search::ModelCache::Key key{1, 2, 3, 4, 2};
-  ASSERT_TRUE(search::ModelCache::decode(search::ModelCache::encode(good, key), key));
+  const search::RasterKey key{1, 2, 3, 4, 2};
+  ASSERT_TRUE(search::decode_raster(search::encode_raster(good, key), key));
   const auto refused = [&](const auto& change) {
     search::ModelRaster r = good;
     change(r);
-    return !search::ModelCache::decode(search::ModelCache::encode(r, key), key);
+    return !search::decode_raster(search::encode_raster(r, key), key);
   };
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.size = 0; }));
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.origin.x() = NAN; }));
@@ -154,6 +152,27 @@ TEST_F(Cache, ChecksWhatAForgedFileHolds) {
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].dims = {-1, -1, 1}; }));
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels[1].dims = {1000000, 1000000, 1000000}; }));
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels.pop_back(); }));
+}
+
+TEST_F(Cache, ASmallFileComesBack) {
+  search::ModelRaster r;
+  r.area = 1;
+  r.samples.resize(3);
+  r.levels.resize(2);
+  for (search::RasterLevel& l : r.levels) l.dims = {1, 2, 1}, l.nearest = {0, 2};
+  const search::RasterKey key{1, 2, 3, 4, 2};
+  const std::string bytes = search::encode_raster(r, key);
+  const auto back = search::decode_raster(bytes, key);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(same(*back, r));
+  const std::string body = bytes.substr(8 + sizeof key + 16);
+  EXPECT_TRUE(search::decode_raster_body(body, 2));
+  for (std::size_t n = 0; n < body.size(); ++n) EXPECT_FALSE(search::decode_raster_body(body.substr(0, n), 2));
+  std::string many = body;  // a count of samples that would need terabytes
+  many.replace(40, 8, std::string("\xff\xfe\0\0\0\0\0\0", 8));
+  EXPECT_FALSE(search::decode_raster_body(many, 2));
+  test::keep_for_corpus("cache", bytes);
+  test::keep_for_corpus("cache", body);
 }
 
 TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {

@@ -15,6 +15,7 @@
 #include "parts/base/memory.h"
 #include "parts/io/image_head.h"
 #include "parts/io/pfm.h"
+#include "support/folder.h"
 
 namespace parts {
 namespace {
@@ -31,7 +32,12 @@ struct RasterIo : testing::Test {
     fs::remove_all(folder);
     fs::create_directories(folder);
   }
-  ~RasterIo() override { fs::remove_all(folder); }
+  ~RasterIo() override {
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.is_regular_file() && entry.file_size() < 65536)
+        test::keep_for_corpus("image", test::contents(entry.path()));
+    fs::remove_all(folder);
+  }
 
   std::string at(const std::string& name) const { return (folder / name).string(); }
   std::string save(const std::string& name, const cv::Mat& image) const {
