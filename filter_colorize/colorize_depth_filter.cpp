@@ -73,10 +73,10 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   read_synthesis(inputs, source->preset(), slug, options);
   const colorize::ColorizeResult result = colorize::colorize_depth(depth, *source, options, coloring);
 
-  OutputFiles files;
+  Outcome outcome;
+  OutputFiles& files = *outcome.files;
   io::add_image(files, io::with_alpha(result.color, result.mask), image_file);
   io::add_image(files, synthesis::usage_picture(result.example), usage_file);
-  Outcome outcome;
   if (add_mesh) {
     const render::Camera camera = render::raster_camera(depth.size(), 1, 0);
     render::DepthMesh made = render::depth_to_mesh(depth, {}, camera, {}, meshing);
@@ -86,7 +86,6 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     outcome.layers.push_back({"Colorized", std::move(made.mesh), true, camera, check_of_depth(false)});
     outcome.current = 0;
   }
-  files.commit();
   log_report(result, progress);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return outcome;

@@ -132,7 +132,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
 
   const colorize::MeshColors colors = colorize::colorize_mesh(mesh, *models, options, coloring);
   progress.stage("Writing", 90, 100);
-  OutputFiles files;
+  Outcome outcome;
+  OutputFiles& files = *outcome.files;
   if (!usage_file.empty()) io::add_image(files, synthesis::usage_picture(colors.example), usage_file);
   if (inputs.choice("Target") == kTexture) {
     add_texture(mesh, colors, inputs, kept, files, progress);
@@ -140,11 +141,9 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     mesh.vertex_color = colorize::vertex_colors(colors);
     mesh.wedges.clear(), mesh.textures.clear(), mesh.face_color.clear();
   }
-  files.commit();
   log_report(colors, progress);
   log_value(progress, "seen", colors.seen);
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  Outcome outcome;
   outcome.layers.push_back({"Colorized", std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
   outcome.current = 0;
   outcome.hidden = {inputs.layer("Mesh")};

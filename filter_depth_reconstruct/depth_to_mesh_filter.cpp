@@ -110,20 +110,18 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   progress.stage("Texture", 95, 100);
 
   Outcome outcome;
-  OutputFiles files;
   render::Camera seen = camera;
   if (in.image_file.empty()) {
     result.mesh.wedges.clear();
   } else {
     const double finer = double(in.image.color.cols) / in.depth.cols;
     seen = render::raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
-    result.mesh.textures = {texture_of(in, inputs, files)};
+    result.mesh.textures = {texture_of(in, inputs, *outcome.files)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();
     outcome.rasters.push_back(
         {std::filesystem::path(in.image_file).filename().string(), result.mesh.textures[0], seen, distance});
   }
-  files.commit();
   log_value(progress, "width", in.depth.cols);
   log_value(progress, "height", in.depth.rows);
   log_value(progress, "max_jump", result.max_jump);

@@ -211,8 +211,7 @@ void log_result(const depth::DepthResult& r, Progress& progress) {
 }
 
 /// @return the texture's file
-std::string write_files(const depth::DepthResult& r, const Input& in, const Inputs& inputs) {
-  OutputFiles files;
+std::string draft_files(const depth::DepthResult& r, const Input& in, const Inputs& inputs, OutputFiles& files) {
   io::add_depth(files, r.depth, inputs.text("DepthFile"));
   io::add_depth(files, r.back_depth, inputs.text("BackDepthFile"));
   io::add_image(files, synthesis::usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
@@ -223,7 +222,6 @@ std::string write_files(const depth::DepthResult& r, const Input& in, const Inpu
   else
     texture = render::add_texture(files, in.image.color, r.mask,
                                   {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
-  files.commit();
   return texture;
 }
 
@@ -247,7 +245,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   Progress meshing = progress.part(90, 98);
   render::DepthMesh result = render::depth_to_mesh(r.depth, r.back_depth, r.camera, {}, meshing);
 
-  result.mesh.textures = {write_files(r, in, inputs)};
+  Outcome outcome;
+  result.mesh.textures = {draft_files(r, in, inputs, *outcome.files)};
 
   log_value(progress, "objects", source->size());
   log_value(progress, "frame_width", source->image_size().width);
@@ -258,7 +257,6 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "vertices", result.mesh.vertex_count());
   log_value(progress, "faces", result.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  Outcome outcome;
   outcome.layers.push_back({"Reconstructed", std::move(result.mesh), true, r.camera, check_of_depth(options.back)});
   outcome.current = 0;
   return outcome;

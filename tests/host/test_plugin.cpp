@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QDir>
 #include <QFileInfo>
 
 #include "parts/base/error.h"
@@ -288,6 +289,36 @@ TEST_F(HostPlugin, WithoutAllowFlawsItIsAFailure) {
       "AllowFlaws to look at it.");
   next = [](const Inputs& in, Progress&) { return composed(in, triangle()); };
   EXPECT_TRUE(apply()) << "nothing is wrong with this one";
+}
+
+TEST_F(HostPlugin, FilesComeWithTheLayersOrNotAtAll) {
+  QFile::remove("made.txt");
+  const auto made = [](Mesh mesh) {
+    return [mesh = std::move(mesh)](const Inputs& in, Progress&) {
+      Outcome out = composed(in, mesh);
+      out.files->add("made.txt", "made");
+      return out;
+    };
+  };
+  list.setValue("AllowFlaws", BoolValue(false));
+  next = made(two_flawed_triangles());
+  EXPECT_FALSE(apply());
+  EXPECT_FALSE(QFileInfo::exists("made.txt"));
+  next = made(triangle());
+  EXPECT_TRUE(apply());
+  EXPECT_TRUE(QFileInfo::exists("made.txt"));
+  EXPECT_EQ(document.meshList.size(), 3);
+  // A file that cannot be put in place takes its layers with it.
+  QFile::remove("made.txt");
+  next = [&](const Inputs& in, Progress&) {
+    QDir().mkpath("made.txt/in_the_way");
+    Outcome out = composed(in, triangle());
+    out.files->add("made.txt", "made");
+    return out;
+  };
+  EXPECT_FALSE(apply());
+  EXPECT_EQ(document.meshList.size(), 3);
+  QDir("made.txt").removeRecursively();
 }
 
 TEST_F(HostPlugin, AResultThatSaysNothingOfInputsIsToBeFlawless) {
