@@ -5,6 +5,7 @@
 
 #include "filters.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/host/common.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/background.h"
@@ -78,13 +79,13 @@ Input read(const Inputs& inputs, Progress& progress) {
 }
 
 /// The file that the mesh names as its texture.
-std::string texture_of(const Input& in, const Inputs& inputs) {
+std::string texture_of(const Input& in, const Inputs& inputs, OutputFiles& files) {
   render::TextureTarget target{inputs.text("TextureFile"),
                                inputs.text("Depth"),
                                {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
   if (target.file.empty() && render::shows_as_texture(in.image_file, in.view.image))
     return std::filesystem::absolute(in.image_file).lexically_normal().string();
-  return render::write_texture(in.view.image.color, in.view.image.mask, target);
+  return render::add_texture(files, in.view.image.color, in.view.image.mask, target);
 }
 
 /// What was assumed of the rasters.
@@ -126,7 +127,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
     const double finer = double(size.width) / in.depth.cols;
     seen = render::raster_camera(size, pixel_size / finer, focal * finer);
     render::fit_texture(result.mesh, in.depth.size(), size);
-    result.mesh.textures = {texture_of(in, inputs)};
+    result.mesh.textures = {texture_of(in, inputs, *outcome.files)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();
     outcome.rasters.push_back(

@@ -6,7 +6,7 @@
 build_packages=(
   g++ cmake ninja-build dpkg-dev
   meshlab qtbase5-dev libqt5opengl5-dev libglew-dev libglu1-mesa-dev
-  libeigen3-dev libtbb-dev libnanoflann-dev libmaxflow-dev libexpat1-dev
+  libeigen3-dev libtbb-dev libnanoflann-dev libmaxflow-dev libpugixml-dev nlohmann-json3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libgtest-dev)
 run_packages=(xvfb libgl1-mesa-dri python3 python3-numpy python3-pil libcgal-demo)
@@ -15,6 +15,7 @@ format_packages=(clang-format-14)
 tidy_packages=(clang-tidy-14)
 coverage_packages=(gcovr)
 reference_packages=(doxygen)
+fuzz_packages=(clang-14)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

@@ -7,6 +7,7 @@
 
 #include "parts/align/align.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/colorize/color_examples.h"
 #include "parts/colorize/find_frame.h"

@@ -61,15 +61,16 @@ double memory_estimate(const Model& a, const Model& b, const Grid& grid) {
 
 bool fits_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
   const Grid grid = Grid::over(volume, resolution);
-  const double have = available_memory(), cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
-  return cells < 9e15 && (have <= 0 || memory_estimate(a, b, grid) < 0.8 * have);
+  const std::optional<double> have = available_memory();
+  const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
+  return cells < 9e15 && (!have || memory_estimate(a, b, grid) < 0.8 * *have);
 }
 
 namespace {
 
 void check_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
   if (fits_memory(a, b, volume, resolution)) return;
-  const double bytes = memory_estimate(a, b, Grid::over(volume, resolution)), have = available_memory();
+  const double bytes = memory_estimate(a, b, Grid::over(volume, resolution)), have = available_memory().value_or(1e18);
   int fits = 1, fails = resolution;
   while (fails - fits > 1) {
     const int middle = fits + (fails - fits) / 2;

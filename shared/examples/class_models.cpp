@@ -8,6 +8,7 @@
 #include "parts/base/error.h"
 #include "parts/base/median.h"
 #include "parts/base/parallel.h"
+#include "parts/render/surface_color.h"
 
 namespace parts::examples {
 namespace {
@@ -62,6 +63,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
   struct Read {
     std::optional<Mesh> mesh;
     std::string why;
+    std::vector<std::string> missing{};
     Entry entry{};
   };
   std::string first_flaw;
@@ -70,7 +72,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
     std::vector<Read> reads(std::size_t(std::min(batch, database_.size() - first)));
     parallel_for(long(reads.size()), batch, [&](long begin, long end) {
       for (long r = begin; r < end; ++r) try {
-          Mesh mesh = database_.load(first + int(r));
+          Mesh mesh = database_.load(first + int(r), {}, &reads[r].missing);
           const Box box = mesh.bounds();
           Entry& e = reads[r].entry;
           e.textures = mesh.textures;
@@ -91,6 +93,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
         progress.log("skipped: " + database_.name(model) + " (" + reads[r].why + ")");
         continue;
       }
+      io::log_missing(database_.name(model), reads[r].missing, progress);
       reads[r].entry.model = model;
       reads[r].entry.name = database_.name(model);
       entries_.push_back(std::move(reads[r].entry));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "parts/base/progress.h"
 #include "parts/examples/example.h"

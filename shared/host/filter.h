@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "parts/base/files.h"
 #include "parts/base/progress.h"
 #include "parts/mesh/mesh.h"
 #include "parts/mesh/result_check.h"
@@ -125,6 +127,9 @@ struct Outcome {
   int current = -1;                ///< of layers: becomes the current one
   std::vector<Layer> hidden;       ///< a result replaces them on the screen
   std::vector<Placement> placed;
+  /// Written as drafts by the filter; put in place once the layers have been
+  /// checked and added, so that a result that is refused leaves no file either.
+  std::shared_ptr<OutputFiles> files = std::make_shared<OutputFiles>();
 };
 
 /// The menus that the suite's filters appear in. Creation: needs no layer.

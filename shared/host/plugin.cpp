@@ -65,6 +65,7 @@ void commit(const Outcome& outcome, MeshDocument& document) {
       write_layer(layer.mesh, *added.back());
       if (layer.camera) set_camera(*layer.camera, *added.back());
     }
+    outcome.files->commit();
     for (const Outcome::NewRaster& raster : outcome.rasters) {
       rasters.push_back(document.addNewRaster());
       write_raster(raster, *rasters.back());

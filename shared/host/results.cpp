@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/host/results.h"
 
+#include <stdexcept>
 #include <unordered_map>
 
 #include "parts/base/error.h"
@@ -43,6 +44,8 @@ void log_figures(const std::string& of, const SurfaceFigures& s, Progress& progr
 }  // namespace
 
 void check_results(const Outcome& outcome, bool allow_flaws, Progress& progress) {
+  for (const Outcome::Placement& p : outcome.placed)
+    if (!p.matrix.allFinite()) throw std::logic_error("a matrix that is not finite");
   std::vector<std::string> flawed;
   InputFigures known;
   for (std::size_t i = 0; i < outcome.layers.size(); ++i) {

@@ -21,6 +21,18 @@ double Scanner::to_number(std::string_view word) {
   throw Malformed("has \"" + std::string(word.substr(0, 20)) + "\" where a number should be");
 }
 
+std::uint64_t check_head(const std::string& format, std::string_view head, std::uint64_t size) {
+  if (size == 0) throw Malformed("is empty");
+  if (format == ".ply") {
+    if (Scanner(head).line() != "ply") throw Malformed("does not begin with \"ply\"");
+  } else if (format == ".stl") {
+    return stl_size(head, size);
+  } else if (head.find('\0') != head.npos) {
+    throw Malformed("is not text, as a file of that ending is");
+  }
+  return size;
+}
+
 long Scanner::to_integer(std::string_view word) {
   const double value = to_number(word);
   if (!(std::abs(value) < 1e15) || value != std::floor(value))

@@ -195,7 +195,8 @@ std::string worse_than_inputs(const SurfaceFigures& result, const std::vector<Su
   if (!rules.may_open && result.borders > before.borders)
     worse.push_back(counted(result.borders - before.borders, "open border", "open borders"));
   flaws(&SurfaceFigures::nonmanifold, "edge of more than two faces", "edges of more than two faces");
-  flaws(&SurfaceFigures::pinches, "vertex in which it touches itself", "vertices in which it touches itself");
+  if (!rules.may_open)
+    flaws(&SurfaceFigures::pinches, "vertex in which it touches itself", "vertices in which it touches itself");
   flaws(&SurfaceFigures::flipped, "edge between faces that look opposite ways",
         "edges between faces that look opposite ways");
   if (!rules.may_cross) flaws(&SurfaceFigures::crossings, "pair of crossing faces", "pairs of crossing faces");
@@ -227,7 +228,12 @@ void check_arrays(const Mesh& mesh) {
 }
 
 Mesh in_single_precision(Mesh mesh) {
-  for (Vec3& p : mesh.vertices) p = p.cast<float>().cast<double>();
+  for (Vec3& p : mesh.vertices)
+    for (int k = 0; k < 3; ++k) {
+      volatile float kept =
+          float(p[k]);  // else GCC 12 leaves the rounding of two neighbours out (-ftree-slp-vectorize)
+      p[k] = double(kept);
+    }
   return mesh;
 }
 

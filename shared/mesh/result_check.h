@@ -37,7 +37,7 @@ SurfaceFigures together(const std::vector<SurfaceFigures>& surfaces);
 struct ResultRules {
   bool joins = false;      ///< more is asked: the inputs become one piece
   bool may_part = false;   ///< more pieces
-  bool may_open = false;   ///< more borders
+  bool may_open = false;   ///< more borders, which may meet in a vertex
   bool may_cross = false;  ///< faces that cross
   bool moved = false;      ///< parts of the inputs lie elsewhere in it: flaws are compared by their number
 };

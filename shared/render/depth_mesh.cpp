@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/mesh/attributes.h"
 #include "parts/render/check_memory.h"

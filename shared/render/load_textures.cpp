@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/render/load_textures.h"
 
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "parts/base/error.h"
+#include "parts/io/raster_io.h"
 
 namespace parts::render {
 
@@ -12,10 +13,9 @@ Textures load_textures(const Mesh& mesh) {
   for (const std::string& file : mesh.textures) {
     std::vector<cv::Mat> levels;
     cv::Mat image;
-    std::error_code error;
     try {
-      if (std::filesystem::is_regular_file(file, error)) image = cv::imread(file, cv::IMREAD_COLOR);
-    } catch (const cv::Exception&) {  // larger than OpenCV reads
+      image = io::read_texture(file);
+    } catch (const UserError&) {  // as if there were none
     }
     while (!image.empty()) {
       levels.push_back(image);

@@ -22,23 +22,21 @@ bool same_proportions(cv::Size depth, cv::Size image) {
          std::abs(rows_ratio(depth, image) - 1) <= kMostOff;
 }
 
-bool same_picture(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
 std::string pixels(cv::Size size) { return std::to_string(size.width) + " x " + std::to_string(size.height); }
 
 }  // namespace
 
 ViewImage read_view_image(const std::string& path, cv::Size depth) {
   ViewImage result;
-  result.image = io::read_image(path, false);
-  io::Image upright = io::read_image(path);
-  if (!same_picture(result.image.color, upright.color)) {
+  result.image = io::read_image(path, io::Turn::AsStored);
+  if (result.image.orientation != 1) {
     result.held = ViewImage::Held::AsStored;
-    if (!same_proportions(depth, result.image.color.size()) && same_proportions(depth, upright.color.size())) {
-      result.held = ViewImage::Held::Turned;
-      result.image = std::move(upright);
+    if (!same_proportions(depth, result.image.color.size())) {
+      io::Image upright = io::read_image(path);
+      if (same_proportions(depth, upright.color.size())) {
+        result.held = ViewImage::Held::Turned;
+        result.image = std::move(upright);
+      }
     }
   }
   const cv::Size size = result.image.color.size();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QDir>
 #include <QFileInfo>
 
 #include "parts/base/error.h"
@@ -290,6 +291,36 @@ TEST_F(HostPlugin, WithoutAllowFlawsItIsAFailure) {
   EXPECT_TRUE(apply()) << "nothing is wrong with this one";
 }
 
+TEST_F(HostPlugin, FilesComeWithTheLayersOrNotAtAll) {
+  QFile::remove("made.txt");
+  const auto made = [](Mesh mesh) {
+    return [mesh = std::move(mesh)](const Inputs& in, Progress&) {
+      Outcome out = composed(in, mesh);
+      out.files->add("made.txt", "made");
+      return out;
+    };
+  };
+  list.setValue("AllowFlaws", BoolValue(false));
+  next = made(two_flawed_triangles());
+  EXPECT_FALSE(apply());
+  EXPECT_FALSE(QFileInfo::exists("made.txt"));
+  next = made(triangle());
+  EXPECT_TRUE(apply());
+  EXPECT_TRUE(QFileInfo::exists("made.txt"));
+  EXPECT_EQ(document.meshList.size(), 3);
+  // A file that cannot be put in place takes its layers with it.
+  QFile::remove("made.txt");
+  next = [&](const Inputs& in, Progress&) {
+    QDir().mkpath("made.txt/in_the_way");
+    Outcome out = composed(in, triangle());
+    out.files->add("made.txt", "made");
+    return out;
+  };
+  EXPECT_FALSE(apply());
+  EXPECT_EQ(document.meshList.size(), 3);
+  QDir("made.txt").removeRecursively();
+}
+
 TEST_F(HostPlugin, AResultThatSaysNothingOfInputsIsToBeFlawless) {
   next = [](const Inputs&, Progress&) {
     Outcome out;
@@ -320,6 +351,17 @@ TEST_F(HostPlugin, AResultThatIsNoMeshIsNeverAdded) {
   };
   expect_failure(
       "The filter met an internal error (a face without its vertex); nothing was changed, please report it with the "
+      "input.");
+}
+
+TEST_F(HostPlugin, NoLayerIsPlacedWhereNothingIs) {
+  next = [](const Inputs& in, Progress&) {
+    Outcome out;
+    out.placed = {{in.layer("A"), Eigen::Matrix4d::Constant(NAN), true}};
+    return out;
+  };
+  expect_failure(
+      "The filter met an internal error (a matrix that is not finite); nothing was changed, please report it with the "
       "input.");
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every filter over a folder of meshes: corpus.py FOLDER [--csv FILE] [--page FILE] [--tenth]
+"""Every filter over a folder of meshes: corpus.py FOLDER [--one-in N] [--csv FILE] [--page FILE]
 
 Outcomes are graded as CGAL's benchmark of Alpha_wrap_3 does it, an unreadable
 input being an outcome of its own and never a success:
@@ -176,10 +176,10 @@ def over_mesh(file, databases, timeout, tell):
     return rows
 
 
-def meshes(folder, tenth=False):
-    """The folder's meshes; a tenth: those whose names' hashes end in 0."""
+def meshes(folder, one_in=1):
+    """The folder's meshes; of so many one: those whose names' hashes it divides."""
     files = sorted(f for f in pathlib.Path(folder).iterdir() if f.suffix.lower() in (".off", ".ply", ".obj", ".stl"))
-    return [f for f in files if not tenth or int(hashlib.sha256(f.name.encode()).hexdigest(), 16) % 10 == 0]
+    return [f for f in files if int(hashlib.sha256(f.name.encode()).hexdigest(), 16) % one_in == 0]
 
 
 def over(files, timeout, tell=lambda row: None):
@@ -211,21 +211,22 @@ def page_of(rows, name):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
-    parser.add_argument("--tenth", action="store_true", help="a tenth of the meshes, chosen by their names' hashes")
+    parser.add_argument("--one-in", type=int, default=1, help="of so many meshes one, chosen by their names' hashes")
     parser.add_argument("--timeout", type=float, default=120, help="seconds a run")
+    parser.add_argument("--name", help="of the folder, for the page")
     parser.add_argument("--csv", default="corpus.csv")
     parser.add_argument("--page", default="corpus.md")
     asked = parser.parse_args()
     if not pathlib.Path(asked.folder).is_dir():
         print(f"There is no folder {asked.folder}; give one that holds meshes.", file=sys.stderr)
         return 1
-    files = meshes(asked.folder, asked.tenth)
+    files = meshes(asked.folder, asked.one_in)
     rows = over(files, asked.timeout, lambda r: print(f"{r.mesh:32} {r.filter:20} {r.grade:9} {r.note}", flush=True))
     with open(asked.csv, "w", newline="") as out:
         table = csv.writer(out, lineterminator="\n")
         table.writerow(Graded._fields)
         table.writerows(r._replace(seconds=f"{r.seconds:.1f}") for r in rows)
-    pathlib.Path(asked.page).write_text(page_of(rows, f"the meshes of {pathlib.Path(asked.folder).resolve().name}"))
+    pathlib.Path(asked.page).write_text(page_of(rows, f"the meshes of {asked.name or pathlib.Path(asked.folder).resolve().name}"))
     bad = [r for r in rows if r.grade not in FINE]
     print(f"{len(rows)} runs over {len(files)} meshes, {len(bad)} that must not be. {asked.page} and {asked.csv} have them.")
     return 1 if bad or not rows else 0

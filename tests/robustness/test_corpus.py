@@ -23,7 +23,7 @@ def main():
     if unpacked.returncode:
         print(unpacked.stderr + "Skipped: the meshes of libcgal-demo are not at hand.")
         return 77
-    files = corpus.meshes(pathlib.Path(unpacked.stdout.strip()), tenth=True)
+    files = corpus.meshes(pathlib.Path(unpacked.stdout.strip()), one_in=10)
     rows = corpus.over(files, float(os.environ.get("PARTS_TIMEOUT", 120)), lambda r: print(*r[:4], flush=True))
     if sys.argv[1:] == ["write"]:
         with open(RECORD, "w", newline="") as out:

@@ -122,6 +122,9 @@ TEST(ResultCheck, PlacesWhereItTouchesItself) {
   EXPECT_EQ(s.pinches.size(), 1u);
   EXPECT_EQ(s.pieces, 2);
   EXPECT_EQ(worse(both(a, b), {a, b}), "1 vertex in which it touches itself");
+  ResultRules open;
+  open.may_open = true;
+  EXPECT_EQ(worse(both(a, b), {a, b}, open), "");
 }
 
 TEST(ResultCheck, CrossingFaces) {
@@ -139,6 +142,13 @@ TEST(ResultCheck, CoordinatesThatAreNoNumbers) {
   EXPECT_GE(measure_surface(m).nonfinite, 5);
   EXPECT_NE(worse(m, {sphere()}).find("with a coordinate that is no number"), std::string::npos);
   EXPECT_EQ(measure_surface(Mesh()).pieces, 0);
+}
+
+TEST(ResultCheck, SinglePrecisionIsWhatTheHostHas) {
+  Mesh m;
+  m.vertices = {{0.1, 1 / 3., -1e-7}};
+  m = mesh::in_single_precision(m);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(m.vertices[0][k], double(float((Vec3(0.1, 1 / 3., -1e-7))[k])));
 }
 
 TEST(ResultCheck, ArraysThatDoNotFit) {
