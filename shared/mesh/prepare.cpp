@@ -128,6 +128,7 @@ Prepared prepare(const Mesh& mesh) {
   p.mesh = take_faces(welded, real_faces(welded), &old_vertex, &p.source_face);
   // What only touched at a vertex is two surfaces again.
   std::vector<char> touching;
+  touching.reserve(old_vertex.size());
   for (int v : old_vertex) touching.push_back(shared[v]);
   p.welded_vertices -= int(split_pinches(p.mesh, touching).size());
   p.dropped_faces = mesh.face_count() - p.mesh.face_count();
