@@ -60,7 +60,7 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const bool add_mesh = inputs.flag("AddMesh");
   if (image_file.empty() && usage_file.empty() && !add_mesh)
     throw UserError("Nothing is asked for; name an ImageFile or a UsageFile, or switch AddMesh on.");
-  for (const std::string& file : {image_file, usage_file}) io::OutputFiles::check_image(file);
+  for (const std::string& file : {image_file, usage_file}) io::check_image_output(file);
 
   progress.stage("Reading", 0, 5);
   const cv::Mat depth = io::read_depth(depth_file);
@@ -73,15 +73,15 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   read_synthesis(inputs, source->preset(), slug, options);
   const colorize::ColorizeResult result = colorize::colorize_depth(depth, *source, options, coloring);
 
-  io::OutputFiles files;
-  files.image(io::with_alpha(result.color, result.mask), image_file);
-  files.image(synthesis::usage_picture(result.example), usage_file);
+  OutputFiles files;
+  io::add_image(files, io::with_alpha(result.color, result.mask), image_file);
+  io::add_image(files, synthesis::usage_picture(result.example), usage_file);
   Outcome outcome;
   if (add_mesh) {
     const render::Camera camera = render::raster_camera(depth.size(), 1, 0);
     render::DepthMesh made = render::depth_to_mesh(depth, {}, camera, {}, meshing);
     const std::string& beside = image_file.empty() ? depth_file : image_file;
-    made.mesh.textures = {render::write_texture(result.color, result.mask, {"", beside, kept})};
+    made.mesh.textures = {render::add_texture(files, result.color, result.mask, {"", beside, kept})};
     log_value(progress, "texture", made.mesh.textures[0]);
     outcome.layers.push_back({"Colorized", std::move(made.mesh), true, camera});
     outcome.current = 0;

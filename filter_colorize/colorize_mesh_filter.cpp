@@ -6,6 +6,7 @@
 #include "filters.h"
 #include "parameters.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/colorize/colorize_mesh.h"
 #include "parts/host/common.h"
@@ -85,15 +86,16 @@ colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh,
 void check_texture_size(int size) {
   constexpr double kBytes = 40;  // a texel while it is found
   const double needed = kBytes * size * size;
-  if (needed > available_memory())
+  const std::optional<double> free = available_memory();
+  if (free && needed > *free)
     throw UserError("A texture of " + std::to_string(size) + " x " + std::to_string(size) + " needs about " +
-                    std::to_string(int(needed / 1e6)) + " MB to make and " +
-                    std::to_string(int(available_memory() / 1e6)) + " MB are free; choose a smaller TextureSize.");
+                    readable_size(needed) + " of memory to make and " + readable_size(*free) +
+                    " are free; choose a smaller TextureSize.");
 }
 
 /// The mesh with a texture: its picture, its file.
 void add_texture(Mesh& mesh, const colorize::MeshColors& colors, const Inputs& inputs,
-                 const std::vector<std::string>& kept, Progress& progress) {
+                 const std::vector<std::string>& kept, OutputFiles& files, Progress& progress) {
   const int size = inputs.integer("TextureSize");
   const std::string flaw = render::texture_coordinates_flaw(mesh, size);
   const Mesh before = mesh;
@@ -106,7 +108,7 @@ void add_texture(Mesh& mesh, const colorize::MeshColors& colors, const Inputs& i
   const colorize::BakedTexture baked = colorize::bake_texture(before, mesh.wedges, size, colors, 0);
   std::string name = std::filesystem::path(inputs.layer("Mesh").name()).filename().string();
   if (name.empty()) name = "colorized";
-  mesh.textures = {render::write_texture(baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
+  mesh.textures = {render::add_texture(files, baked.color, baked.mask, {inputs.text("TextureFile"), name, kept})};
   mesh.vertex_color.clear(), mesh.face_color.clear();
   log_value(progress, "texture", mesh.textures[0]);
 }
@@ -115,8 +117,8 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::string database = inputs.text("Database"), usage_file = inputs.text("UsageFile");
   if (database.empty()) throw UserError("No database is named; choose a project or a folder of coloured models.");
-  io::OutputFiles::check_image(inputs.text("TextureFile"));
-  io::OutputFiles::check_image(usage_file);
+  io::check_image_output(inputs.text("TextureFile"));
+  io::check_image_output(usage_file);
   if (inputs.choice("Target") == kTexture) check_texture_size(inputs.integer("TextureSize"));
   Mesh mesh = surface_of(inputs.layer("Mesh"));
   Progress opening = progress.part(0, 20), coloring = progress.part(20, 90);
@@ -130,10 +132,10 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
 
   const colorize::MeshColors colors = colorize::colorize_mesh(mesh, *models, options, coloring);
   progress.stage("Writing", 90, 100);
-  io::OutputFiles files;
-  if (!usage_file.empty()) files.image(synthesis::usage_picture(colors.example), usage_file);
+  OutputFiles files;
+  if (!usage_file.empty()) io::add_image(files, synthesis::usage_picture(colors.example), usage_file);
   if (inputs.choice("Target") == kTexture) {
-    add_texture(mesh, colors, inputs, kept, progress);
+    add_texture(mesh, colors, inputs, kept, files, progress);
   } else {
     mesh.vertex_color = colorize::vertex_colors(colors);
     mesh.wedges.clear(), mesh.textures.clear(), mesh.face_color.clear();

@@ -5,6 +5,7 @@
 
 #include "filters.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/depth_mesh.h"
 #include "parts/render/texture.h"
@@ -49,6 +50,24 @@ struct Input {
   io::Image image;
 };
 
+bool same_proportions(cv::Size a, cv::Size b) {
+  const double skew = std::abs(double(a.width) * b.height - double(a.height) * b.width);
+  return skew <= std::max({a.width, a.height, b.width, b.height});
+}
+
+/// A photograph says how the camera was held and a depth raster does not: rows and
+/// columns as they are stored belong together, unless only the upright ones fit.
+io::Image image_for(const std::string& file, cv::Size depth, Progress& progress) {
+  io::Image image = io::read_image(file, io::Turn::AsStored, [&] { progress.at(0.5); });
+  if (image.orientation == 1) return image;
+  const bool turn = !same_proportions(image.color.size(), depth);
+  if (turn) image = io::read_image(file);
+  log_value(progress, "image_orientation",
+            std::to_string(image.orientation) +
+                (turn ? " (turned upright, as the depth raster is)" : " (not turned, as the depth raster is not)"));
+  return image;
+}
+
 Input read(const Inputs& inputs, Progress& progress) {
   const std::string depth = inputs.text("Depth"), back = inputs.text("BackDepth");
   const double scale = inputs.number("DepthScale");
@@ -56,15 +75,15 @@ Input read(const Inputs& inputs, Progress& progress) {
   if (scale == 0) throw UserError("DepthScale is 0, which makes all depths 0; give another value.");
   progress.stage("Reading", 0, 20);
   Input in;
-  in.depth = io::read_depth(depth, scale);
-  if (!back.empty()) in.back = io::read_depth(back, scale);
+  const Poll poll = [&] { progress.at(0); };
+  in.depth = io::read_depth(depth, scale, poll);
+  if (!back.empty()) in.back = io::read_depth(back, scale, poll);
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;
   progress.at(0.5);
-  in.image = io::read_image(in.image_file);
+  in.image = image_for(in.image_file, in.depth.size(), progress);
   const cv::Size d = in.depth.size(), i = in.image.color.size();
-  const double skew = std::abs(double(i.width) * d.height - double(i.height) * d.width);
-  if (skew > std::max({i.width, i.height, d.width, d.height}))
+  if (!same_proportions(i, d))
     throw UserError("The image has " + std::to_string(i.width) + " x " + std::to_string(i.height) +
                     " pixels and the depth raster " + std::to_string(d.width) + " x " + std::to_string(d.height) +
                     "; give an image of the same view, with the same proportions.");
@@ -72,13 +91,13 @@ Input read(const Inputs& inputs, Progress& progress) {
 }
 
 /// The file that the mesh names as its texture.
-std::string texture_of(const Input& in, const Inputs& inputs) {
+std::string texture_of(const Input& in, const Inputs& inputs, OutputFiles& files) {
   render::TextureTarget target{inputs.text("TextureFile"),
                                inputs.text("Depth"),
                                {inputs.text("Depth"), inputs.text("BackDepth"), in.image_file}};
   if (target.file.empty() && render::shows_as_texture(in.image_file, in.image))
     return std::filesystem::absolute(in.image_file).lexically_normal().string();
-  return render::write_texture(in.image.color, in.image.mask, target);
+  return render::add_texture(files, in.image.color, in.image.mask, target);
 }
 
 Outcome apply(const Inputs& inputs, Progress& progress) {
@@ -91,18 +110,20 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   progress.stage("Texture", 95, 100);
 
   Outcome outcome;
+  OutputFiles files;
   render::Camera seen = camera;
   if (in.image_file.empty()) {
     result.mesh.wedges.clear();
   } else {
     const double finer = double(in.image.color.cols) / in.depth.cols;
     seen = render::raster_camera(in.image.color.size(), pixel_size / finer, focal * finer);
-    result.mesh.textures = {texture_of(in, inputs)};
+    result.mesh.textures = {texture_of(in, inputs, files)};
     log_value(progress, "texture", result.mesh.textures[0]);
     const double distance = camera.project(result.mesh.bounds().center()).z();
     outcome.rasters.push_back(
         {std::filesystem::path(in.image_file).filename().string(), result.mesh.textures[0], seen, distance});
   }
+  files.commit();
   log_value(progress, "width", in.depth.cols);
   log_value(progress, "height", in.depth.rows);
   log_value(progress, "max_jump", result.max_jump);

@@ -128,7 +128,7 @@ Input read(const Inputs& inputs) {
   refuse_inputs(inputs, outputs, {in.file, mask, inputs.text("Database")});
   for (const char* name : outputs) {
     const bool depth = name == std::string("DepthFile") || name == std::string("BackDepthFile");
-    (depth ? io::OutputFiles::check_depth : io::OutputFiles::check_image)(inputs.text(name));
+    (depth ? io::check_depth_output : io::check_image_output)(inputs.text(name));
   }
   return in;
 }
@@ -212,17 +212,17 @@ void log_result(const depth::DepthResult& r, Progress& progress) {
 
 /// @return the texture's file
 std::string write_files(const depth::DepthResult& r, const Input& in, const Inputs& inputs) {
-  io::OutputFiles files;
-  files.depth(r.depth, inputs.text("DepthFile"));
-  files.depth(r.back_depth, inputs.text("BackDepthFile"));
-  files.image(synthesis::usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
-  files.image(r.mask, inputs.text("MaskFile"));
+  OutputFiles files;
+  io::add_depth(files, r.depth, inputs.text("DepthFile"));
+  io::add_depth(files, r.back_depth, inputs.text("BackDepthFile"));
+  io::add_image(files, synthesis::usage_picture(r.example, cv::Scalar::all(255)), inputs.text("UsageFile"));
+  io::add_image(files, r.mask, inputs.text("MaskFile"));
   std::string texture = inputs.text("TextureFile");
   if (texture.empty() && render::shows_as_texture(in.file, in.image))
     texture = std::filesystem::absolute(in.file).lexically_normal().string();
   else
-    texture = render::write_texture(in.image.color, r.mask,
-                                    {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
+    texture = render::add_texture(files, in.image.color, r.mask,
+                                  {texture, in.file, {in.file, inputs.text("Mask"), inputs.text("Database")}});
   files.commit();
   return texture;
 }

@@ -4,13 +4,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "parts/base/error.h"
 #include "parts/io/mesh_io.h"
 #include "parts/io/mlp_project.h"
+#include "parts/io/raster_io.h"
 #include "support/busts.h"
 
 namespace {
@@ -72,7 +71,7 @@ Arguments parse(int argc, char** argv) {
 
 void write_bust(const Mesh& mesh, const cv::Mat& image, const std::string& file) {
   const std::string texture = fs::path(file).replace_extension(".png").string();
-  if (!cv::imwrite(texture, image)) throw UserError("The image \"" + texture + "\" cannot be written.");
+  io::write_image(image, texture);
   Mesh named = mesh;
   named.textures = {texture};
   io::write_mesh(named, file);

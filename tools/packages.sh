@@ -6,12 +6,13 @@
 build_packages=(
   g++ cmake ninja-build dpkg-dev
   meshlab qtbase5-dev libqt5opengl5-dev libglew-dev libglu1-mesa-dev
-  libeigen3-dev libflann-dev liblz4-dev libmaxflow-dev libexpat1-dev
+  libeigen3-dev libflann-dev liblz4-dev libmaxflow-dev libpugixml-dev nlohmann-json3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libgtest-dev)
 run_packages=(xvfb libgl1-mesa-dri python3 python3-numpy python3-pil libcgal-demo)
 bench_packages=(libcgal-dev)
 format_packages=(clang-format-14)
+fuzz_packages=(clang-14)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

@@ -7,15 +7,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 #include "parts/base/error.h"
 #include "parts/io/mesh_io.h"
+#include "parts/io/raster_io.h"
 #include "parts/render/camera.h"
 #include "parts/render/rasterize.h"
+#include "parts/render/surface_color.h"
 
 namespace {
 
@@ -281,12 +282,7 @@ void run(const Arguments& a) {
     draw(model, framed(model, rotation, a, common), a).copyTo(sheet(place));
     if (a.label) write_label(sheet, model.label, {place.x, place.y + a.size, a.size, strip});
   }
-  bool written = false;
-  try {
-    written = cv::imwrite(a.out, sheet);
-  } catch (const cv::Exception&) {
-  }
-  if (!written) throw UserError("The picture \"" + a.out + "\" cannot be written; name a .png in an existing folder.");
+  io::write_image(sheet, a.out);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "parts/align/align.h"
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/colorize/kept_colors.h"
 #include "parts/render/surface_color.h"
@@ -171,10 +172,10 @@ void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
   double pixels = 0;
   for (const cv::Rect& part : parts) pixels += double(part.area());
   const double needed = pixels * kBytes * double(images);
-  if (needed > available_memory())
-    throw UserError("The views need about " + std::to_string(int(needed / 1e6)) + " MB and " +
-                    std::to_string(int(available_memory() / 1e6)) +
-                    " MB are free; choose a smaller Width and Height, fewer Views or fewer Examples.");
+  const std::optional<double> free = available_memory();
+  if (free && needed > *free)
+    throw UserError("The views need about " + readable_size(needed) + " of memory and " + readable_size(*free) +
+                    " are free; choose a smaller Width and Height, fewer Views or fewer Examples.");
 }
 
 /// Whether nearly all that is seen are front faces.

@@ -59,9 +59,10 @@ double memory_estimate(const Model& a, const Model& b, const Grid& grid) {
 
 void check_memory(const Model& a, const Model& b, const Box& volume, int resolution) {
   const Grid grid = Grid::over(volume, resolution);
-  const double bytes = memory_estimate(a, b, grid), have = available_memory();
+  const std::optional<double> free = available_memory();
+  const double bytes = memory_estimate(a, b, grid), have = free.value_or(1e18);
   const double cells = double(grid.dims[0]) * grid.dims[1] * grid.dims[2];
-  if (cells < 9e15 && (have <= 0 || bytes < 0.8 * have)) return;
+  if (cells < 9e15 && (!free || bytes < 0.8 * have)) return;
   int fits = 1, fails = resolution;
   while (fails - fits > 1) {
     const int middle = fits + (fails - fits) / 2;

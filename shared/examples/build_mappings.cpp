@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <vector>
 
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/examples/class_models.h"
 #include "parts/io/class_preset.h"
+#include "parts/io/manifest.h"
 #include "parts/io/mesh_io.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"
@@ -36,74 +39,77 @@ std::string safe(const std::string& name) {
   return out.substr(0, 40);
 }
 
-/// The output of a run: a folder that grows beside the database's own until all is there.
+/// The files of a run, which come to light once all of them are there.
 class Draft {
  public:
-  explicit Draft(const fs::path& output)
-      : output_(output),
-        folder_(output.parent_path() / (output.stem().string() + "_mappings")),
-        part_(output.parent_path() / (output.stem().string() + "_mappings.part")) {
-    std::error_code error;
-    fs::create_directories(part_, error);
-    if (error)
-      throw UserError("The folder \"" + part_.string() + "\" cannot be made; choose an output that may be written.");
+  /// @param inputs  files that are never replaced or removed
+  Draft(const fs::path& output, const std::vector<std::string>& inputs)
+      : output_(output), folder_(output.parent_path() / (output.stem().string() + "_mappings")), inputs_(inputs) {
+    files_.make_folder(folder_);
+    find_older();
   }
-  ~Draft() {
-    std::error_code error;
-    for (const fs::path& file : files_) fs::remove(part_ / file, error);
-    fs::remove(part_, error);  // only if it is empty
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
 
-  /// Where to write a file, and where it will be.
-  std::string now(const std::string& name) {
-    files_.insert(name);
-    return (part_ / name).string();
+  /// Where a file of that name will be. @throws UserError  it is the user's
+  std::string place(const std::string& name) {
+    const fs::path path = folder_ / name;
+    std::error_code error;
+    const bool ours = older_.count(name) > 0;
+    if (fs::exists(path, error) && (!ours || is_input(path)))
+      throw UserError("The file \"" + path.string() +
+                      "\" is not of an older database and would be replaced; move it, or give another output.");
+    names_.insert(name);
+    return path.string();
   }
-  std::string later(const std::string& name) const { return (folder_ / name).string(); }
+  OutputFiles& files() { return files_; }
   const fs::path& folder() const { return folder_; }
   double free_bytes() const {
     std::error_code error;
-    const fs::space_info space = fs::space(part_, error);
+    const fs::space_info space = fs::space(folder_, error);
     return error ? 0 : double(space.available);
   }
 
-  /// Puts all in place; the files of the database that was there before go.
-  void commit(const io::MlpProject& project) {
-    std::set<fs::path> old = files_of_old_database();
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    for (const fs::path& file : files_) {
-      if (!error) fs::rename(part_ / file, folder_ / file, error);
-      old.erase(folder_ / file);
-    }
-    if (error)
-      throw UserError("The folder \"" + folder_.string() + "\" cannot be written; check it and the space left.");
-    io::write_mlp(project, output_.string());
-    for (const fs::path& file : old) fs::remove(file, error);
+  /// Puts all in place; what only the older database had goes.
+  void commit(const io::MlpProject& project, const io::ClassPreset& preset) {
+    const FolderLock alone(folder_of(output_));
+    find_older();
+    for (const std::string& name : manifest_)
+      if (names_.count(name) == 0 && !is_input(folder_ / name)) files_.remove(folder_ / name);
+    io::add_manifest(files_, names_, folder_);
+    io::add_class_preset(files_, preset, output_.string());
+    io::add_mlp(files_, project, output_.string());
+    files_.commit();
   }
 
  private:
-  std::set<fs::path> files_of_old_database() const {
-    std::set<fs::path> files;
-    std::error_code error;
-    if (!fs::exists(output_, error)) return files;
+  /// Files of an older database: what its manifest names, or the images of one
+  /// that was made before there were manifests, which are replaced but not removed.
+  void find_older() {
+    const std::optional<io::Manifest> manifest = io::read_manifest(folder_);
+    manifest_ = manifest.value_or(io::Manifest());
+    older_.insert(manifest_.begin(), manifest_.end());
+    if (manifest || !fs::exists(output_)) return;
     try {
-      const auto add = [&](const fs::path& file) {
-        if (file.parent_path() == folder_.lexically_normal()) files.insert(file);
-      };
-      const io::MlpProject old = io::read_mlp(output_.string());
-      for (const io::MlpMesh& mesh : old.meshes) add(mesh.file);
-      for (const io::MlpRaster& raster : old.rasters)
-        for (const io::MlpPlane& plane : raster.planes) add(plane.file);
+      for (const io::MlpRaster& raster : io::read_mlp(output_.string()).rasters)
+        for (const io::MlpPlane& plane : raster.planes) {
+          const fs::path file = plane.file;
+          if (folder_of(file).lexically_normal() != folder_.lexically_normal()) continue;
+          older_.insert(file.filename().string());
+          older_.insert(file.stem().string() + "_surface.ply");
+        }
     } catch (const UserError&) {  // it could not be read: nothing is known to be its
     }
-    return files;
+  }
+  bool is_input(const fs::path& file) const {
+    std::error_code error;
+    return std::any_of(inputs_.begin(), inputs_.end(),
+                       [&](const std::string& i) { return fs::equivalent(i, file, error); });
   }
 
-  fs::path output_, folder_, part_;
-  std::set<fs::path> files_;
+  fs::path output_, folder_;
+  std::vector<std::string> inputs_;
+  io::Manifest manifest_, names_;
+  std::set<std::string> older_;
+  OutputFiles files_;
 };
 
 void check_output(const std::string& output, const std::string& models) {
@@ -126,10 +132,9 @@ void check_output(const std::string& output, const std::string& models) {
 }
 
 void check_space(double bytes, double free) {
-  char text[80];
   if (free <= 0 || bytes < free) return;
-  std::snprintf(text, sizeof text, "about %.1f GB, and %.1f GB are free", bytes / 1e9, free / 1e9);
-  throw UserError("The examples need " + std::string(text) + " on the disk; choose smaller images or fewer views.");
+  throw UserError("The examples need about " + readable_size(bytes) + " on the disk, and " + readable_size(free) +
+                  " are free; choose smaller images or fewer views.");
 }
 
 /// Stores the planes of an example and lists them as a raster.
@@ -138,14 +143,11 @@ io::MlpRaster store(const Example& e, const std::string& stem, Draft& draft, dou
   raster.label = e.object + " " + shown(e.view.yaw) + "," + shown(e.view.pitch);
   raster.camera = render::to_mlp(e.camera, cv::mean(e.depth, e.mask)[0]);
   const auto add = [&](int semantic, const std::string& name, const cv::Mat& raster_data, bool depth) {
-    const std::string file = draft.now(name);
-    if (depth)
-      io::write_depth(raster_data, file);
-    else
-      io::write_image(raster_data, file);
-    std::error_code error;
-    bytes += double(fs::file_size(file, error));
-    raster.planes.push_back({semantic, draft.later(name)});
+    const std::string file = draft.place(name);
+    const double before = draft.files().bytes();
+    (depth ? io::add_depth : io::add_image)(draft.files(), raster_data, file);
+    bytes += draft.files().bytes() - before;
+    raster.planes.push_back({semantic, file});
   };
   add(io::plane::kColor, stem + ".png", io::with_alpha(e.image, e.mask), false);  // first: MeshLab shows this one
   add(io::plane::kMask, stem + "_mask.png", e.mask, false);
@@ -159,11 +161,26 @@ void add_surface(const Example& e, const std::string& stem, Draft& draft, io::Ml
   try {
     Progress silent;
     render::DepthMesh surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
-    surface.mesh.textures = {draft.now(stem + ".png")};
-    io::write_mesh(surface.mesh, draft.now(stem + "_surface.ply"));
-    project.meshes.push_back({project.rasters.back().label, draft.later(stem + "_surface.ply")});
+    surface.mesh.textures = {stem + ".png"};
+    const std::string file = draft.place(stem + "_surface.ply");
+    io::add_mesh(draft.files(), surface.mesh, file);
+    project.meshes.push_back({project.rasters.back().label, file});
   } catch (const UserError&) {  // too small to be a surface
   }
+}
+
+/// The class's preset for the new database. What users set in the preset of an older one stays.
+io::ClassPreset preset_for(const std::string& output, const std::string& models, const ExampleOptions& options,
+                           Progress& progress) {
+  io::ClassPreset preset = io::read_class_preset(models);
+  const io::ClassPreset older = io::read_class_preset(output);
+  for (const auto& [filter, values] : older.values)
+    for (const auto& [name, value] : values) preset.values[filter][name] = value;
+  preset.up = options.up, preset.front = options.front;
+  if ((older.up && *older.up != options.up) || (older.front && *older.front != options.front))
+    progress.log("preset_changed: Up and Front of \"" + io::class_preset_path(output) +
+                 "\" are now those that the models were seen with");
+  return preset;
 }
 
 }  // namespace
@@ -174,7 +191,7 @@ MappingsReport build_mappings(const io::ModelDatabase& database, const std::vect
   for (const render::View& view : views) render::view_rotation(view, options.up, options.front);
   progress.stage("Reading the models", 0, 30);
   ClassModels models(database, views, options, progress);
-  Draft draft(fs::absolute(output));
+  Draft draft(fs::absolute(output), models.files());
   check_space(double(models.size()) * double(views.size()) * options.width * options.height * 12, draft.free_bytes());
 
   progress.stage("Rendering examples", 30, 98);
@@ -203,11 +220,7 @@ MappingsReport build_mappings(const io::ModelDatabase& database, const std::vect
   if (project.rasters.empty()) throw UserError("Nothing is seen of any model; choose larger images or other views.");
 
   progress.stage("Writing the database", 98, 100);
-  io::ClassPreset preset = io::read_class_preset(database.path());
-  preset.up = options.up;
-  preset.front = options.front;
-  draft.commit(project);
-  io::write_class_preset(preset, output);
+  draft.commit(project, preset_for(output, database.path(), options, progress));
   report.megabytes = bytes / 1e6;
   report.folder = draft.folder().string();
   return report;

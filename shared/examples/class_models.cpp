@@ -7,6 +7,7 @@
 
 #include "parts/base/error.h"
 #include "parts/base/parallel.h"
+#include "parts/render/surface_color.h"
 
 namespace parts::examples {
 namespace {
@@ -61,6 +62,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
   struct Read {
     std::optional<Mesh> mesh;
     std::string why;
+    std::vector<std::string> missing{};
     Entry entry{};
   };
   std::string first_flaw;
@@ -69,7 +71,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
     std::vector<Read> reads(std::size_t(std::min(batch, database_.size() - first)));
     parallel_for(long(reads.size()), batch, [&](long begin, long end) {
       for (long r = begin; r < end; ++r) try {
-          Mesh mesh = database_.load(first + int(r));
+          Mesh mesh = database_.load(first + int(r), {}, &reads[r].missing);
           const Box box = mesh.bounds();
           Entry& e = reads[r].entry;
           e.textures = mesh.textures;
@@ -90,6 +92,7 @@ std::string ClassModels::measure(const std::vector<render::View>& views, Progres
         progress.log("skipped: " + database_.name(model) + " (" + reads[r].why + ")");
         continue;
       }
+      io::log_missing(database_.name(model), reads[r].missing, progress);
       reads[r].entry.model = model;
       reads[r].entry.name = database_.name(model);
       entries_.push_back(std::move(reads[r].entry));

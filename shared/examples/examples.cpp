@@ -6,6 +6,7 @@
 
 #include "parts/base/error.h"
 #include "parts/examples/class_models.h"
+#include "parts/examples/stored_examples.h"
 #include "parts/io/mlp_project.h"
 
 namespace parts::examples {

@@ -23,14 +23,6 @@ std::unique_ptr<ExampleSource> render_examples(const io::ModelDatabase& database
                                                const std::vector<render::View>& views, const ExampleOptions& options,
                                                Progress& progress);
 
-/// Opens a mapping database: a project whose rasters have an RGBA plane and a
-/// DEPTH_F plane (and MASK_UB, EXTRA00_F where there are such) and a camera.
-/// Rasters without depth are left out and logged. Rasters with the same label
-/// but for the view in it ("name 30,-15") are views of one object.
-/// @throws UserError  no such project, no such raster in it, a file is missing,
-///                    sizes differ
-std::unique_ptr<ExampleSource> open_mapping_database(const std::string& path, Progress& progress);
-
 /// A project with a raster that has a depth plane is a mapping database; any
 /// other project, and any folder, a database of models to render.
 std::unique_ptr<ExampleSource> open_examples(const std::string& path, const std::vector<render::View>& views,

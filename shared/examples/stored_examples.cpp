@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A mapping database: rasters of a MeshLab project.
+#include "parts/examples/stored_examples.h"
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include "parts/base/error.h"
-#include "parts/examples/examples.h"
-#include "parts/io/image_size.h"
+#include "parts/io/image_head.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/mlp_camera.h"
@@ -116,7 +117,7 @@ class StoredExamples : public ExampleSource {
       if (!fs::is_regular_file(plane.file, error))
         throw UserError("The file \"" + plane.file + "\" of the database \"" + path_ +
                         "\" is missing; put it back, or build the database again.");
-      if (const std::optional<io::ImageHead> head = io::read_image_head(plane.file))
+      if (const std::optional<io::ImageHead> head = io::read_image_head(InputFile(plane.file)))
         check_size(plane.file, {int(std::min(head->width, 1e9)), int(std::min(head->height, 1e9))});
     }
   }

@@ -5,20 +5,51 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/core.hpp>
-
-#include "parts/base/error.h"
+#include <nlohmann/json.hpp>
 
 namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
-std::string as_text(const cv::FileNode& node) {
-  if (node.isString()) return std::string(node);
-  if (node.isInt()) return std::to_string(int(node));
+constexpr int kDeepest = 16;                 // a preset has three levels
+constexpr std::uint64_t kLongest = 1 << 20;  // bytes
+constexpr const char* kNamed = "The class preset";
+
+/// @return nothing if it is not a JSON object
+std::optional<Json> object_of(const std::string& text) {
+  bool too_deep = false;
+  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) too_deep = true;
+    return !too_deep;
+  };
+  try {
+    Json json = Json::parse(text, watch, true, true);
+    if (too_deep || !json.is_object()) return {};
+    return json;
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+/// The object in the preset's file; an empty one where there is none.
+Json read_object(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return Json::object();
+  const std::optional<Json> object = object_of(InputFile(path, kNamed).read_all(kLongest));
+  if (!object)
+    throw UserError(std::string(kNamed) + " \"" + path + "\" cannot be read; make it valid JSON, or take it away.");
+  return *object;
+}
+
+std::optional<std::string> as_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+  if (value.is_number_integer()) return value.dump();
+  if (!value.is_number()) return {};
   char text[32];
-  std::snprintf(text, sizeof text, "%.9g", double(node));
+  std::snprintf(text, sizeof text, "%.9g", value.get<double>());
   return text;
 }
 
@@ -29,38 +60,35 @@ std::optional<double> as_number(const std::string& text) {
   return value;
 }
 
-std::optional<Vec3> as_direction(const cv::FileNode& node) {
-  if (!node.isSeq() || node.size() != 3) return {};
+std::optional<Vec3> as_direction(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_array() || found->size() != 3) return {};
   Vec3 v;
-  for (int i = 0; i < 3; ++i) v[i] = node[i].isReal() || node[i].isInt() ? double(node[i]) : 0;
-  if (!v.allFinite() || !(v.norm() > 0)) return {};
+  for (std::size_t i = 0; i < 3; ++i) v[Eigen::Index(i)] = (*found)[i].is_number() ? (*found)[i].get<double>() : 0;
+  if (!v.allFinite() || !(v.norm() > 0) || !std::isfinite(v.norm())) return {};
   return v;
 }
 
-ClassPreset parsed(const cv::FileStorage& file) {
+ClassPreset preset_of(const Json& object) {
   ClassPreset preset;
-  preset.up = as_direction(file["Up"]);
-  preset.front = as_direction(file["Front"]);
-  const cv::FileNode root = file.root();
-  for (const cv::FileNode& filter : root) {
-    if (!filter.isMap()) continue;
-    for (const cv::FileNode& value : filter)
-      if (value.isString() || value.isInt() || value.isReal())
-        preset.values[filter.name()][value.name()] = as_text(value);
+  preset.up = as_direction(object, "Up");
+  preset.front = as_direction(object, "Front");
+  for (const auto& [filter, values] : object.items()) {
+    if (!values.is_object()) continue;
+    for (const auto& [name, value] : values.items())
+      if (const auto text = as_text(value)) preset.values[filter][name] = *text;
   }
   return preset;
 }
 
-void write_value(cv::FileStorage& file, const std::string& name, const std::string& value) {
-  if (const std::optional<double> number = as_number(value))
-    file << name << *number;
-  else
-    file << name << value;
+Json as_value(const std::string& text) {
+  const std::optional<double> number = as_number(text);
+  if (!number) return text;
+  const bool whole = *number == std::floor(*number) && std::abs(*number) < 1e15;
+  return whole ? Json(std::int64_t(*number)) : Json(*number);
 }
 
-void write_direction(cv::FileStorage& file, const char* name, const Vec3& v) {
-  file << name << "[" << v.x() << v.y() << v.z() << "]";
-}
+Json as_list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
@@ -83,43 +111,33 @@ std::string class_preset_path(const std::string& database) {
   return fs::path(database).replace_extension(".class.json").string();
 }
 
+std::optional<ClassPreset> parse_class_preset(const std::string& text) {
+  const std::optional<Json> object = object_of(text);
+  if (!object) return {};
+  return preset_of(*object);
+}
+
 ClassPreset read_class_preset(const std::string& database) {
+  return preset_of(read_object(class_preset_path(database)));
+}
+
+void add_class_preset(OutputFiles& files, const ClassPreset& preset, const std::string& database) {
   const std::string path = class_preset_path(database);
-  std::error_code error;
-  if (!fs::exists(path, error)) return {};
-  try {
-    const cv::FileStorage file(path, cv::FileStorage::READ | cv::FileStorage::FORMAT_JSON);
-    if (file.isOpened()) return parsed(file);
-  } catch (const cv::Exception&) {
+  Json object = read_object(path);
+  if (preset.up) object["Up"] = as_list(*preset.up);
+  if (preset.front) object["Front"] = as_list(*preset.front);
+  for (const auto& [filter, values] : preset.values) {
+    Json& of_filter = object[filter];
+    if (!of_filter.is_object()) of_filter = Json::object();
+    for (const auto& [name, value] : values) of_filter[name] = as_value(value);
   }
-  throw UserError("The class preset \"" + path + "\" cannot be read; make it valid JSON, or take it away.");
+  files.add(path, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", kNamed);
 }
 
 void write_class_preset(const ClassPreset& preset, const std::string& database) {
-  const std::string path = class_preset_path(database), draft = path + ".part";
-  std::error_code error;
-  bool written = false;
-  try {
-    cv::FileStorage file(draft, cv::FileStorage::WRITE | cv::FileStorage::FORMAT_JSON);
-    written = file.isOpened();
-    if (written) {
-      if (preset.up) write_direction(file, "Up", *preset.up);
-      if (preset.front) write_direction(file, "Front", *preset.front);
-      for (const auto& [filter, values] : preset.values) {
-        file << filter << "{";
-        for (const auto& [name, value] : values) write_value(file, name, value);
-        file << "}";
-      }
-    }
-    file.release();
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (written) fs::rename(draft, path, error);
-  if (!written || error) {
-    fs::remove(draft, error);
-    throw UserError("The class preset \"" + path + "\" cannot be written; check its folder and the space left.");
-  }
+  OutputFiles files;
+  add_class_preset(files, preset, database);
+  files.commit();
 }
 
 }  // namespace parts::io

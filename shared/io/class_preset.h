@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "parts/base/files.h"
 #include "parts/mesh/mesh.h"
 
 namespace parts::io {
@@ -33,7 +34,14 @@ std::string class_preset_path(const std::string& database);
 /// @throws UserError  the file is there but cannot be read
 ClassPreset read_class_preset(const std::string& database);
 
-/// @throws UserError  the file cannot be written
+/// Parses the text of such a file. @return nothing if it is no JSON object, or nested too deeply to be one
+std::optional<ClassPreset> parse_class_preset(const std::string& text);
+
+/// Writes what the preset says; what else a file that is there already says stays.
+/// @throws UserError  the file cannot be read or written
 void write_class_preset(const ClassPreset& preset, const std::string& database);
+
+/// The same as one of several files.
+void add_class_preset(OutputFiles& files, const ClassPreset& preset, const std::string& database);
 
 }  // namespace parts::io

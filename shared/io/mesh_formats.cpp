@@ -19,6 +19,18 @@ double Scanner::to_number(std::string_view word) {
   throw Malformed("has \"" + std::string(word.substr(0, 20)) + "\" where a number should be");
 }
 
+std::uint64_t check_head(const std::string& format, std::string_view head, std::uint64_t size) {
+  if (size == 0) throw Malformed("is empty");
+  if (format == ".ply") {
+    if (Scanner(head).line() != "ply") throw Malformed("does not begin with \"ply\"");
+  } else if (format == ".stl") {
+    return stl_size(head, size);
+  } else if (head.find('\0') != head.npos) {
+    throw Malformed("is not text, as a file of that ending is");
+  }
+  return size;
+}
+
 long Scanner::to_integer(std::string_view word) {
   const double value = to_number(word);
   if (!(std::abs(value) < 1e15) || value != std::floor(value))
@@ -52,13 +64,38 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-bool is_ear(const std::vector<Vec2>& points, const std::vector<int>& left, int a, int b, int c) {
-  if (!(turn(points[a], points[b], points[c]) > 0)) return false;
+constexpr int kEar = -1, kReflex = -2, kUnknown = -3;
+
+/// kEar where the corner b between a and c can be cut off, kReflex where it does
+/// not stick out, else a point that lies in its way.
+int what_blocks(const std::vector<Vec2>& points, const std::vector<int>& left, int a, int b, int c) {
+  if (!(turn(points[a], points[b], points[c]) > 0)) return kReflex;
   for (int i : left)
     if (i != a && i != b && i != c && turn(points[a], points[b], points[i]) >= 0 &&
         turn(points[b], points[c], points[i]) >= 0 && turn(points[c], points[a], points[i]) >= 0)
-      return false;
-  return true;
+      return i;
+  return kEar;
+}
+
+/// Cuts ears off a polygon as long as there are some. A corner is looked at anew
+/// only once a corner beside it, or the point in its way, is gone.
+void cut_ears(const std::vector<Vec2>& points, std::vector<int>& left, std::vector<Triangle>& triangles) {
+  std::vector<int> block(points.size(), kUnknown);
+  std::vector<char> gone(points.size(), 0);
+  for (int i = 0, tried = 0; left.size() > 3 && tried < int(left.size());) {
+    const int m = int(left.size()), a = left[i % m], b = left[(i + 1) % m], c = left[(i + 2) % m];
+    if (block[b] == kUnknown || (block[b] >= 0 && gone[block[b]])) block[b] = what_blocks(points, left, a, b, c);
+    if (block[b] == kEar) {
+      triangles.push_back({a, b, c});
+      left.erase(left.begin() + (i + 1) % m);
+      gone[b] = 1;
+      block[a] = block[c] = kUnknown;
+      tried = 0;
+    } else {
+      ++tried;
+    }
+    i = (i + 1) % int(left.size());
+  }
 }
 
 }  // namespace
@@ -77,17 +114,7 @@ std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::
     const auto length = [&](int i, int j) { return (vertices[polygon[i]] - vertices[polygon[j]]).norm(); };
     if (odd && (!even || length(1, 3) < length(0, 2))) return {{0, 1, 3}, {1, 2, 3}};
   }
-  for (int i = 0, tried = 0; !points.empty() && left.size() > 3 && tried < int(left.size());) {
-    const int m = int(left.size()), a = left[i % m], b = left[(i + 1) % m], c = left[(i + 2) % m];
-    if (is_ear(points, left, a, b, c)) {
-      triangles.push_back({a, b, c});
-      left.erase(left.begin() + (i + 1) % m);
-      tried = 0;
-    } else {
-      ++tried;
-    }
-    i = (i + 1) % int(left.size());
-  }
+  if (!points.empty()) cut_ears(points, left, triangles);
   for (std::size_t i = 1; i + 1 < left.size(); ++i) triangles.push_back({left[0], left[i], left[i + 1]});
   return triangles;
 }

@@ -2,20 +2,19 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "parts/base/files.h"
 #include "parts/mesh/mesh.h"
 
 /// The bytes of mesh files, to and from meshes; read_mesh() and write_mesh()
-/// are the way in. The parsers trust nothing: every index, count and size is
-/// checked against what the file holds. (vcglib's importers were tried first:
-/// they write out of bounds, loop or assert on thirteen of the two dozen broken
-/// files of the tests, and find an .obj's materials only by changing the
-/// directory of the whole process; its .obj exporter keeps six decimals.)
+/// are the way in, and say why these parsers are our own. They trust nothing:
+/// every index, count and size is checked against what the file holds.
 namespace parts::io::formats {
 
 /// The bytes are not a mesh of that format; what() completes "The file … ".
@@ -26,11 +25,20 @@ struct Malformed : std::runtime_error {
 /// The text of a file that a mesh file names, or nothing.
 using Sibling = std::function<std::optional<std::string>(const std::string& name)>;
 
-/// @throws Malformed
-Mesh parse_ply(std::string_view bytes);
-Mesh parse_obj(std::string_view bytes, const Sibling& material_library);
-Mesh parse_off(std::string_view bytes);
-Mesh parse_stl(std::string_view bytes);
+/// Looks at the first bytes of a file of a format (".ply"), before all are read.
+/// @return how many of its `size` bytes are worth reading
+/// @throws Malformed  it cannot be one
+std::uint64_t check_head(const std::string& format, std::string_view head, std::uint64_t size);
+constexpr std::size_t kHeadBytes = 1000;
+std::uint64_t stl_size(std::string_view head, std::uint64_t size);  ///< the same, of an .stl
+
+/// @throws Malformed, and what poll throws
+Mesh parse_ply(std::string_view bytes, const Poll& poll = {});
+/// @param missing  gets the names of material libraries that are not there
+Mesh parse_obj(std::string_view bytes, const Sibling& material_library, std::vector<std::string>& missing,
+               const Poll& poll = {});
+Mesh parse_off(std::string_view bytes, const Poll& poll = {});
+Mesh parse_stl(std::string_view bytes, const Poll& poll = {});
 
 std::string format_ply(const Mesh& mesh);
 std::string format_off(const Mesh& mesh);
@@ -43,19 +51,34 @@ ObjText format_obj(const Mesh& mesh, const std::string& material_file);
 /// `polygon`; concave ones by their ears, crossed or flat ones as a fan.
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<int>& polygon);
 
+/// Asks a poll every few thousand items.
+class Pace {
+ public:
+  explicit Pace(const Poll& poll) : poll_(poll) {}
+  void step() {
+    if (++steps_ % 8192 == 0 && poll_) poll_();
+  }
+
+ private:
+  const Poll& poll_;
+  unsigned steps_ = 0;
+};
+
 /// Walks text by numbers and words, whatever the line ends and the locale.
 class Scanner {
  public:
-  explicit Scanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+  explicit Scanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {
+    if (text.substr(0, 3) == "\xEF\xBB\xBF") at_ += 3;  // the mark that some editors put before UTF-8
+  }
   bool done() const { return at_ == end_; }
   std::size_t left() const { return std::size_t(end_ - at_); }
   /// The rest of the line without its end; moves to the next one.
   std::string_view line() {
     const char* from = at_;
-    while (at_ != end_ && *at_ != '\n') ++at_;
-    std::string_view found(from, std::size_t(at_ - from));
-    if (at_ != end_) ++at_;
-    if (!found.empty() && found.back() == '\r') found.remove_suffix(1);
+    while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
+    const std::string_view found(from, std::size_t(at_ - from));
+    if (at_ != end_ && *at_ == '\r') ++at_;
+    if (at_ != end_ && *at_ == '\n' && (at_ == from + found.size() || at_[-1] == '\r')) ++at_;
     return found;
   }
   /// The next word, of this or a later line; empty at the end.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
@@ -19,30 +20,75 @@ std::uint8_t to_byte(double share) {
   return std::uint8_t(std::lround(std::clamp(share >= 0 ? share : 0, 0., 1.) * 255));
 }
 
-/// The rest of a line without blanks at its ends.
-std::string rest_of(Scanner& words) {
-  const std::string_view rest = words.line();
-  const std::size_t from = rest.find_first_not_of(" \t"), to = rest.find_last_not_of(" \t");
-  return from == rest.npos ? "" : std::string(rest.substr(from, to - from + 1));
+std::string lower(std::string_view word) {
+  std::string out(word);
+  for (char& c : out) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return out;
 }
 
-/// The file of a map_Kd line, which may have blanks in it and options before it.
-std::string texture_file(const std::string& rest) {
-  return rest.empty() || rest[0] != '-' ? rest : rest.substr(rest.find_last_of(" \t") + 1);
+bool is_number(std::string_view word) {
+  try {
+    Scanner::to_number(word);
+    return true;
+  } catch (const Malformed&) {
+    return false;
+  }
 }
 
+/// Without blanks at its ends.
+std::string trimmed(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(" \t"), to = text.find_last_not_of(" \t");
+  return from == text.npos ? "" : std::string(text.substr(from, to - from + 1));
+}
+
+/// The rest of a line.
+std::string rest_of(Scanner& words) { return trimmed(words.line()); }
+
+/// How many words an option of a texture map may have behind it: so many at
+/// least, so many at most, of which the further ones are numbers. (The MTL
+/// specification, appendix B1 of Wavefront's Advanced Visualizer manual.)
+std::pair<int, int> words_of_option(const std::string& option) {
+  if (option == "-o" || option == "-s" || option == "-t") return {1, 3};
+  if (option == "-mm") return {2, 2};
+  for (const char* with_one : {"-blendu", "-blendv", "-boost", "-bm", "-cc", "-clamp", "-imfchan", "-texres", "-type"})
+    if (option == with_one) return {1, 1};
+  return {-1, -1};
+}
+
+/// The file of a map_Kd line: behind its options, with blanks in it, perhaps in quotes.
+std::string texture_file(std::string_view line) {
+  std::string rest = trimmed(line);
+  while (!rest.empty() && rest[0] == '-') {
+    Scanner words(rest);
+    const auto [least, most] = words_of_option(lower(words.word()));
+    if (least < 0) break;  // a name that begins so
+    Scanner behind = words;
+    for (int k = 0; k < most; ++k) {
+      const std::string_view word = words.word();
+      if (word.empty() || (k >= least && !is_number(word))) break;
+      behind = words;
+    }
+    rest = trimmed(behind.line());
+  }
+  if (rest.size() > 1 && (rest.front() == '"' || rest.front() == '\'') && rest.back() == rest.front())
+    rest = rest.substr(1, rest.size() - 2);
+  return rest;
+}
+
+/// @throws Malformed
 void read_materials(std::string_view text, std::map<std::string, Material>& materials,
                     std::vector<std::string>& textures) {
   Material* current = nullptr;
   for (Scanner file(text); !file.done();) {
     Scanner words(file.line());
-    const std::string_view key = words.word();
+    const std::string key = lower(words.word());
     if (key == "newmtl") {
       current = &materials[rest_of(words)];
-    } else if (key == "Kd" && current) {
+    } else if (key == "kd" && current) {
       for (int k = 0; k < 3; ++k) current->color[k] = to_byte(words.number());
-    } else if (key == "map_Kd" && current) {
-      const std::string name = texture_file(rest_of(words));
+    } else if (key == "map_kd" && current) {
+      const std::string name = texture_file(words.line());
+      if (name.empty()) continue;
       const auto known = std::find(textures.begin(), textures.end(), name);
       current->texture = int(known - textures.begin());
       if (known == textures.end()) textures.push_back(name);
@@ -65,9 +111,9 @@ int resolve(std::string_view word, std::size_t so_far) {
 /// An .obj as it comes: its faces may name what follows later.
 class ObjFile {
  public:
-  explicit ObjFile(const Sibling& library) : library_(library) {}
-  void read(std::string_view bytes);
-  Mesh mesh();
+  ObjFile(const Sibling& library, std::vector<std::string>& missing) : library_(library), missing_(missing) {}
+  void read(std::string_view bytes, Pace& pace);
+  Mesh mesh(Pace& pace);
 
  private:
   void read_line(std::string_view line);
@@ -77,6 +123,7 @@ class ObjFile {
   void use_library(const std::string& names);
 
   const Sibling& library_;
+  std::vector<std::string>& missing_;
   std::vector<Vec3> vertices_;
   std::vector<Color> colors_;
   std::vector<Eigen::Vector2f> uvs_;
@@ -92,9 +139,19 @@ class ObjFile {
 void ObjFile::use_library(const std::string& names) {
   // One name with blanks, or several names.
   if (const auto text = library_(names)) return read_materials(*text, materials_, textures_);
+  std::vector<std::string> lost;
+  bool found = false;
   Scanner words(names);
-  for (std::string name(words.word()); !name.empty(); name = words.word())
-    if (const auto text = library_(name)) read_materials(*text, materials_, textures_);
+  for (std::string name(words.word()); !name.empty(); name = words.word()) {
+    const auto text = library_(name);
+    if (text) read_materials(*text, materials_, textures_);
+    if (!text) lost.push_back(name);
+    found |= bool(text);
+  }
+  if (found)
+    missing_.insert(missing_.end(), lost.begin(), lost.end());
+  else
+    missing_.push_back(names);
 }
 
 void ObjFile::read_vertex(Scanner& words) {
@@ -146,9 +203,9 @@ void ObjFile::read_line(std::string_view line) {
   }
 }
 
-void ObjFile::read(std::string_view bytes) {
+void ObjFile::read(std::string_view bytes, Pace& pace) {
   std::string joined;
-  for (Scanner file(bytes); !file.done();) {
+  for (Scanner file(bytes); !file.done(); pace.step()) {
     std::string_view line = file.line();
     if (!line.empty() && line.back() == '\\') {  // goes on in the next line
       joined = line;
@@ -185,10 +242,10 @@ void ObjFile::add_polygon(std::size_t face, Mesh& mesh) const {
   }
 }
 
-Mesh ObjFile::mesh() {
+Mesh ObjFile::mesh(Pace& pace) {
   Mesh mesh;
   if (!normals_.empty()) mesh.vertex_normal.assign(vertices_.size(), Eigen::Vector3f::Zero());
-  for (std::size_t f = 0; f < material_.size(); ++f)
+  for (std::size_t f = 0; f < material_.size(); ++f, pace.step())
     if (first_corner_[f + 1] - first_corner_[f] >= 3) add_polygon(f, mesh);
   for (Eigen::Vector3f& n : mesh.vertex_normal)
     if (n.squaredNorm() > 0) n.normalize();
@@ -206,10 +263,12 @@ Mesh ObjFile::mesh() {
 
 }  // namespace
 
-Mesh parse_obj(std::string_view bytes, const Sibling& material_library) {
-  ObjFile file(material_library);
-  file.read(bytes);
-  return file.mesh();
+Mesh parse_obj(std::string_view bytes, const Sibling& material_library, std::vector<std::string>& missing,
+               const Poll& poll) {
+  Pace pace(poll);
+  ObjFile file(material_library, missing);
+  file.read(bytes, pace);
+  return file.mesh(pace);
 }
 
 namespace {

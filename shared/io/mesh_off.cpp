@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "parts/io/mesh_formats.h"
+#include "parts/mesh/arrays.h"
 
 namespace parts::io::formats {
 namespace {
@@ -118,7 +119,8 @@ void read_face(Lines& file, Mesh& mesh) {
 
 }  // namespace
 
-Mesh parse_off(std::string_view bytes) {
+Mesh parse_off(std::string_view bytes, const Poll& poll) {
+  Pace pace(poll);
   Lines file(bytes);
   file.next();
   const OffKind kind = kind_of(file.take());
@@ -130,10 +132,10 @@ Mesh parse_off(std::string_view bytes) {
   Mesh mesh;
   mesh.vertices.reserve(std::size_t(vertices));
   std::vector<Eigen::Vector2f> uv;
-  for (long v = 0; v < vertices; ++v) read_vertex(file, kind, mesh, uv);
+  for (long v = 0; v < vertices; ++v, pace.step()) read_vertex(file, kind, mesh, uv);
   if (file.more()) throw Malformed("has more numbers than its vertices need");
-  for (long f = 0; f < faces; ++f) read_face(file, mesh);
-  if (!mesh.face_color.empty()) mesh.face_color.resize(mesh.faces.size(), {255, 255, 255, 255});
+  for (long f = 0; f < faces; ++f, pace.step()) read_face(file, mesh);
+  mesh::fill_face_attributes(mesh);
   for (std::size_t f = 0; f < mesh.faces.size() && !uv.empty(); ++f) {
     const Triangle& t = mesh.faces[f];
     mesh.wedges.push_back({{uv[t[0]], uv[t[1]], uv[t[2]]}, -1});

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "parts/io/mesh_formats.h"
+#include "parts/mesh/arrays.h"
 
 namespace parts::io::formats {
 namespace {
@@ -238,13 +239,13 @@ void expect_room(const Element& e, const Header& header, const Body& body) {
   if (bytes * double(e.count) > double(body.left()) + 1) throw Malformed("is shorter than its header says");
 }
 
-void read_vertices(const Element& e, Body& body, Mesh& mesh, std::vector<Eigen::Vector2f>& uv) {
+void read_vertices(const Element& e, Body& body, Mesh& mesh, std::vector<Eigen::Vector2f>& uv, Pace& pace) {
   if (!e.has(X) || !e.has(Y) || !e.has(Z)) throw Malformed("has vertices without coordinates");
   if (!mesh.vertices.empty()) throw Malformed("has more than one list of vertices");
   mesh.vertices.reserve(std::size_t(e.count));
   Record r;
   r.scalar[Alpha] = 255;
-  for (long i = 0; i < e.count; ++i) {
+  for (long i = 0; i < e.count; ++i, pace.step()) {
     r.read(e, body);
     const double* s = r.scalar;
     mesh.vertices.emplace_back(s[X], s[Y], s[Z]);
@@ -286,11 +287,21 @@ void add_strips(const Record& r, Mesh& mesh) {
   }
 }
 
-void read_faces(const Element& e, Body& body, Mesh& mesh, bool strips) {
+/// A file may have several lists of faces, of which some have an attribute and others do not.
+void begin_faces(const Element& e, Mesh& mesh) {
+  const std::size_t before = mesh.faces.size();
+  if (e.has(Red)) mesh.face_color.resize(before, {255, 255, 255, 255});
+  if (e.has(Quality)) mesh.face_quality.resize(before, 0.f);
+  if (e.has(Flags)) mesh.face_selected.resize(before, 0);
+  if (e.has(Texcoords, true)) mesh.wedges.resize(before);
+}
+
+void read_faces(const Element& e, Body& body, Mesh& mesh, bool strips, Pace& pace) {
   Record r;
   r.scalar[Alpha] = 255;
   std::vector<int> polygon;
-  for (long i = 0; i < e.count; ++i) {
+  if (!strips) begin_faces(e, mesh);
+  for (long i = 0; i < e.count; ++i, pace.step()) {
     r.read(e, body);
     if (strips) {
       add_strips(r, mesh);
@@ -300,11 +311,13 @@ void read_faces(const Element& e, Body& body, Mesh& mesh, bool strips) {
     for (std::size_t k = 0; k < polygon.size(); ++k) polygon[k] = r.vertex(k, mesh);
     if (polygon.size() >= 3) add_face(e, r, polygon, mesh);
   }
+  mesh::fill_face_attributes(mesh);
 }
 
 }  // namespace
 
-Mesh parse_ply(std::string_view bytes) {
+Mesh parse_ply(std::string_view bytes, const Poll& poll) {
+  Pace pace(poll);
   Scanner head(bytes);
   const Header header = read_header(head);
   Body body(bytes.substr(bytes.size() - head.left()), header.encoding);
@@ -315,12 +328,12 @@ Mesh parse_ply(std::string_view bytes) {
     if (e.properties.empty()) continue;
     expect_room(e, header, body);
     if (e.name == "vertex") {
-      read_vertices(e, body, mesh, uv);
+      read_vertices(e, body, mesh, uv, pace);
     } else if ((e.name == "face" || e.name == "tristrips") && e.has(Indices, true)) {
-      read_faces(e, body, mesh, e.name == "tristrips");
+      read_faces(e, body, mesh, e.name == "tristrips", pace);
     } else {
       Record skipped;
-      for (long i = 0; i < e.count; ++i) skipped.read(e, body);
+      for (long i = 0; i < e.count; ++i, pace.step()) skipped.read(e, body);
     }
   }
   if (mesh.wedges.empty() && !uv.empty())

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <unordered_map>
 
@@ -35,7 +37,27 @@ class Welder {
   std::unordered_map<Key, int, Hash> ids_;
 };
 
-Mesh parse_binary(std::string_view bytes, std::size_t faces) {
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// The bytes of a binary file by its count of faces; 0 without one.
+std::uint64_t binary_size(std::string_view bytes) {
+  std::uint32_t count = 0;
+  if (bytes.size() < kHeader + 4) return 0;
+  std::memcpy(&count, bytes.data() + kHeader, sizeof count);
+  return kHeader + 4 + std::uint64_t(count) * kRecord;
+}
+
+/// Some binary files begin with "solid" too; only text has no zero bytes.
+bool is_text(std::string_view bytes) {
+  const std::string start = lower(bytes.substr(0, kHeadBytes));
+  return start.find("solid") != start.npos && start.find('\0') == start.npos;
+}
+
+Mesh parse_binary(std::string_view bytes, std::size_t faces, Pace pace) {
   Mesh mesh;
   Welder weld(mesh);
   // Two conventions for a face's 15 bits of colour, by the header.
@@ -44,6 +66,7 @@ Mesh parse_binary(std::string_view bytes, std::size_t faces) {
   bool colored = false;
   mesh.faces.reserve(faces);
   for (std::size_t f = 0; f < faces; ++f) {
+    pace.step();
     const char* record = bytes.data() + kHeader + 4 + f * kRecord;
     Eigen::Matrix3f p;  // a corner a column
     std::uint16_t bits;
@@ -61,13 +84,14 @@ Mesh parse_binary(std::string_view bytes, std::size_t faces) {
   return mesh;
 }
 
-Mesh parse_text(std::string_view bytes) {
+Mesh parse_text(std::string_view bytes, Pace pace) {
   Mesh mesh;
   Welder weld(mesh);
   Triangle t{};
   int corners = 0;
   for (Scanner file(bytes); !file.done();) {
-    const std::string_view word = file.word();
+    pace.step();
+    const std::string word = lower(file.word());
     if (word == "solid" || word == "endsolid") {
       file.line();  // a name, which may be any word
     } else if (word == "vertex") {
@@ -86,17 +110,18 @@ Mesh parse_text(std::string_view bytes) {
 
 }  // namespace
 
-Mesh parse_stl(std::string_view bytes) {
-  std::uint32_t count = 0;
-  const bool room = bytes.size() >= kHeader + 4;
-  if (room) std::memcpy(&count, bytes.data() + kHeader, sizeof count);
-  const std::size_t expected = kHeader + 4 + std::size_t(count) * kRecord;
-  if (room && bytes.size() == expected) return parse_binary(bytes, count);
-  // Some binary files begin with "solid" too; only text has no zero bytes.
-  const std::string_view start = bytes.substr(0, 1000);
-  if (start.find("solid") != start.npos && start.find('\0') == start.npos) return parse_text(bytes);
-  if (!room || bytes.size() < expected) throw Malformed("is shorter than its header says");
-  return parse_binary(bytes, count);
+std::uint64_t stl_size(std::string_view head, std::uint64_t size) {
+  const std::uint64_t binary = binary_size(head);
+  if (binary != size && is_text(head)) return size;
+  if (binary == 0 || size < binary) throw Malformed("is shorter than its header says");
+  return binary;
+}
+
+Mesh parse_stl(std::string_view bytes, const Poll& poll) {
+  const std::uint64_t binary = binary_size(bytes);
+  if (binary != bytes.size() && is_text(bytes)) return parse_text(bytes, Pace(poll));
+  if (binary == 0 || bytes.size() < binary) throw Malformed("is shorter than its header says");
+  return parse_binary(bytes, std::size_t((binary - kHeader - 4) / kRecord), Pace(poll));
 }
 
 }  // namespace parts::io::formats

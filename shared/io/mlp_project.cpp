@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/io/mlp_project.h"
 
-#include <expat.h>
-
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
+#include <pugixml.hpp>
+#include <sstream>
 #include <string_view>
 
-#include "parts/base/error.h"
 #include "parts/io/mesh_formats.h"
+#include "parts/io/sibling.h"
 
 namespace parts::io {
 namespace {
 
 namespace fs = std::filesystem;
 using formats::Malformed;
+
+constexpr const char* kNamed = "The project";
 
 /// Exactly n finite numbers; a camera's vectors may have more, which are dropped.
 std::vector<double> numbers(const std::string& what, std::string_view text, std::size_t n, bool more_may_follow) {
@@ -37,181 +37,122 @@ std::vector<double> numbers(const std::string& what, std::string_view text, std:
   return values;
 }
 
-/// Builds the project from expat's calls. Exceptions must not cross expat (a C
-/// library): the first is kept, and the parser stopped.
-class Reader {
- public:
-  Reader(fs::path folder, XML_Parser parser) : folder_(std::move(folder)), parser_(parser) {
-    XML_SetUserData(parser, this);
-    XML_SetElementHandler(parser, start, end);
-    XML_SetCharacterDataHandler(parser, text);
-  }
+/// The nearest integer that an int can hold.
+int whole(double value) { return int(std::clamp(value, double(INT_MIN), double(INT_MAX))); }
 
+MlpCamera camera_of(const pugi::xml_node& element) {
+  MlpCamera c;
+  c.given = true;
+  const auto read = [&](const char* name, std::size_t n, const auto& use) {
+    const std::string_view value = element.attribute(name).value();
+    if (!value.empty()) use(numbers("the camera's " + std::string(name), value, n, true));
+  };
+  using Values = std::vector<double>;
+  read("TranslationVector", 3, [&](const Values& v) { c.translation = Eigen::Vector3d(v[0], v[1], v[2]); });
+  read("RotationMatrix", 11, [&](const Values& v) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) c.rotation(i, j) = v[std::size_t(4 * i + j)];
+  });
+  read("FocalMm", 1, [&](const Values& v) { c.focal_mm = v[0]; });
+  read("ViewportPx", 2,
+       [&](const Values& v) { c.viewport_px = Eigen::Vector2i(std::max(0, whole(v[0])), std::max(0, whole(v[1]))); });
+  read("PixelSizeMm", 2, [&](const Values& v) { c.pixel_mm = Eigen::Vector2d(v[0], v[1]); });
+  read("CenterPx", 2, [&](const Values& v) { c.center_px = Eigen::Vector2d(v[0], v[1]); });
+  read("LensDistortion", 2, [&](const Values& v) { c.distortion = Eigen::Vector2d(v[0], v[1]); });
+  read("CameraType", 1, [&](const Values& v) { c.type = std::max(0, whole(v[0])); });
+  return c;
+}
+
+MlpMesh mesh_of(const pugi::xml_node& element) {
+  MlpMesh mesh;
+  mesh.label = element.attribute("label").value();
+  mesh.file = element.attribute("filename").value();
+  const std::string_view text = element.child("MLMatrix44").text().get();
+  if (text.find_first_not_of(" \t\r\n") == text.npos) return mesh;
+  const std::vector<double> m = numbers("a matrix", text, 16, false);
+  mesh.matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+  return mesh;
+}
+
+MlpRaster raster_of(const pugi::xml_node& element) {
+  MlpRaster raster;
+  raster.label = element.attribute("label").value();
+  if (const pugi::xml_node camera = element.child("VCGCamera")) raster.camera = camera_of(camera);
+  for (const pugi::xml_node& node : element.children("Plane")) {
+    MlpPlane plane;
+    plane.file = node.attribute("fileName").value();
+    const std::string_view semantic = node.attribute("semantic").value();
+    if (!semantic.empty()) plane.semantic = whole(numbers("a plane's semantic", semantic, 1, false)[0]);
+    raster.planes.push_back(plane);
+  }
+  return raster;
+}
+
+/// A project declares its type; entities of its own, which may unfold without bound, it has no use for.
+void refuse_entities(const pugi::xml_document& document) {
+  for (const pugi::xml_node& node : document.children())
+    if (node.type() == pugi::node_doctype && std::strchr(node.value(), '['))
+      throw Malformed("is damaged (it declares entities)");
+}
+
+MlpProject parsed(const std::string& bytes) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result =
+      document.load_buffer(bytes.data(), bytes.size(), pugi::parse_default | pugi::parse_doctype);
+  if (result.status == pugi::status_out_of_memory) throw std::bad_alloc();
+  if (!result) {
+    const auto line =
+        1 + std::count(bytes.begin(), bytes.begin() + std::clamp<long>(result.offset, 0, long(bytes.size())), '\n');
+    throw Malformed("is damaged in line " + std::to_string(line) + " (" + result.description() + ")");
+  }
+  refuse_entities(document);
+  const pugi::xml_node root = document.child("MeshLabProject");
+  if (!root) throw Malformed("is not a MeshLab project");
   MlpProject project;
-  bool is_project = false;
-  std::exception_ptr error;
-
- private:
-  using Attributes = const XML_Char**;
-
-  template <class Call>
-  void guarded(const Call& call) {
-    try {
-      if (!error) call();
-    } catch (...) {
-      error = std::current_exception();
-      XML_StopParser(parser_, XML_FALSE);
-    }
-  }
-  static void start(void* self, const XML_Char* name, Attributes attributes) {
-    Reader& r = *static_cast<Reader*>(self);
-    r.guarded([&] { r.open(name, attributes); });
-  }
-  static void end(void* self, const XML_Char* name) {
-    Reader& r = *static_cast<Reader*>(self);
-    r.guarded([&] { r.close(name); });
-  }
-  static void text(void* self, const XML_Char* bytes, int n) {
-    Reader& r = *static_cast<Reader*>(self);
-    r.guarded([&] {
-      if (r.in_matrix_) r.matrix_.append(bytes, std::size_t(n));
-    });
-  }
-
-  static const char* attribute(Attributes attributes, std::string_view name) {
-    for (; *attributes; attributes += 2)
-      if (attributes[0] == name) return attributes[1];
-    return "";
-  }
-  std::string file(std::string name) const {
-    if (name.empty()) return name;
-    std::error_code e;
-    if (!fs::exists(folder_ / name, e)) {  // written on another system
-      std::string slashed = name;
-      std::replace(slashed.begin(), slashed.end(), '\\', '/');
-      if (fs::exists(folder_ / slashed, e)) name = slashed;
-    }
-    return (folder_ / name).lexically_normal().string();
-  }
-
-  void open(const std::string& name, Attributes attributes) {
-    if (name == "MeshLabProject") {
-      is_project = true;
-    } else if (name == "MLMesh") {
-      MlpMesh mesh;
-      mesh.label = attribute(attributes, "label");
-      mesh.file = file(attribute(attributes, "filename"));
-      project.meshes.push_back(mesh);
-      in_mesh_ = true;
-    } else if (name == "MLMatrix44" && in_mesh_) {
-      in_matrix_ = true;
-      matrix_.clear();
-    } else if (name == "MLRaster") {
-      project.rasters.emplace_back();
-      project.rasters.back().label = attribute(attributes, "label");
-      in_raster_ = true;
-    } else if (name == "VCGCamera" && in_raster_) {
-      project.rasters.back().camera = camera(attributes);
-    } else if (name == "Plane" && in_raster_) {
-      MlpPlane plane;
-      plane.file = file(attribute(attributes, "fileName"));
-      const std::string_view semantic = attribute(attributes, "semantic");
-      if (!semantic.empty()) plane.semantic = int(numbers("a plane's semantic", semantic, 1, false)[0]);
-      project.rasters.back().planes.push_back(plane);
-    }
-  }
-
-  void close(const std::string& name) {
-    if (name == "MLMatrix44" && in_matrix_) {
-      in_matrix_ = false;
-      if (matrix_.find_first_not_of(" \t\r\n") == std::string::npos) return;
-      const std::vector<double> m = numbers("a matrix", matrix_, 16, false);
-      project.meshes.back().matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
-    } else if (name == "MLMesh") {
-      in_mesh_ = false;
-    } else if (name == "MLRaster") {
-      in_raster_ = false;
-    }
-  }
-
-  static MlpCamera camera(Attributes attributes) {
-    MlpCamera c;
-    c.given = true;
-    const auto read = [&](const char* name, std::size_t n, const auto& use) {
-      const std::string_view value = attribute(attributes, name);
-      if (!value.empty()) use(numbers("the camera's " + std::string(name), value, n, true));
-    };
-    using Values = std::vector<double>;
-    const auto whole = [](double v) { return int(std::clamp(v, 0.0, double(INT_MAX))); };
-    read("TranslationVector", 3, [&](const Values& v) { c.translation = Eigen::Vector3d(v[0], v[1], v[2]); });
-    read("RotationMatrix", 11, [&](const Values& v) {
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) c.rotation(i, j) = v[4 * i + j];
-    });
-    read("FocalMm", 1, [&](const Values& v) { c.focal_mm = v[0]; });
-    read("ViewportPx", 2, [&](const Values& v) { c.viewport_px = Eigen::Vector2i(whole(v[0]), whole(v[1])); });
-    read("PixelSizeMm", 2, [&](const Values& v) { c.pixel_mm = Eigen::Vector2d(v[0], v[1]); });
-    read("CenterPx", 2, [&](const Values& v) { c.center_px = Eigen::Vector2d(v[0], v[1]); });
-    read("LensDistortion", 2, [&](const Values& v) { c.distortion = Eigen::Vector2d(v[0], v[1]); });
-    read("CameraType", 1, [&](const Values& v) { c.type = whole(v[0]); });
-    return c;
-  }
-
-  fs::path folder_;
-  XML_Parser parser_;
-  bool in_mesh_ = false, in_raster_ = false, in_matrix_ = false;
-  std::string matrix_;
-};
-
-void append_escaped(std::string& out, std::string_view text) {
-  for (char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+  for (const pugi::xml_node& group : root.children("MeshGroup"))
+    for (const pugi::xml_node& mesh : group.children("MLMesh")) project.meshes.push_back(mesh_of(mesh));
+  for (const pugi::xml_node& group : root.children("RasterGroup"))
+    for (const pugi::xml_node& raster : group.children("MLRaster")) project.rasters.push_back(raster_of(raster));
+  return project;
 }
 
-void append_attribute(std::string& out, const char* name, std::string_view value) {
-  out.append(" ").append(name).append("=\"");
-  append_escaped(out, value);
-  out += '"';
+/// Names files such that they open from here.
+void place_files(MlpProject& project, const std::string& path) {
+  const auto place = [&](std::string& file) {
+    if (!file.empty()) file = named_beside(path, file).string();
+  };
+  for (MlpMesh& mesh : project.meshes) place(mesh.file);
+  for (MlpRaster& raster : project.rasters)
+    for (MlpPlane& plane : raster.planes) place(plane.file);
 }
 
-void append_attribute(std::string& out, const char* name, std::initializer_list<double> values) {
+std::string text_of(std::initializer_list<double> values) {
   std::string text;
   for (double v : values) {
     if (!text.empty()) text += ' ';
     formats::append(text, v);
   }
-  append_attribute(out, name, text);
+  return text;
 }
 
-std::string camera_element(const MlpCamera& c) {
-  std::string out = "   <VCGCamera";
+void set(pugi::xml_node& element, const char* name, const std::string& value) {
+  element.append_attribute(name).set_value(value.c_str());
+}
+
+void add_camera(pugi::xml_node& raster, const MlpCamera& c) {
   const Eigen::Matrix3d& r = c.rotation;
-  append_attribute(out, "TranslationVector", {c.translation[0], c.translation[1], c.translation[2], 1});
-  append_attribute(out, "RotationMatrix",
-                   {r(0, 0), r(0, 1), r(0, 2), 0, r(1, 0), r(1, 1), r(1, 2), 0,  //
-                    r(2, 0), r(2, 1), r(2, 2), 0, 0, 0, 0, 1});
-  append_attribute(out, "CameraType", {double(c.type)});
-  append_attribute(out, "BinaryData", "0");
-  append_attribute(out, "FocalMm", {c.focal_mm});
-  append_attribute(out, "LensDistortion", {c.distortion[0], c.distortion[1]});
-  append_attribute(out, "PixelSizeMm", {c.pixel_mm[0], c.pixel_mm[1]});
-  append_attribute(out, "ViewportPx", {double(c.viewport_px[0]), double(c.viewport_px[1])});
-  append_attribute(out, "CenterPx", {c.center_px[0], c.center_px[1]});
-  return out + "/>\n";
+  pugi::xml_node camera = raster.append_child("VCGCamera");
+  set(camera, "TranslationVector", text_of({c.translation[0], c.translation[1], c.translation[2], 1}));
+  set(camera, "RotationMatrix",
+      text_of({r(0, 0), r(0, 1), r(0, 2), 0, r(1, 0), r(1, 1), r(1, 2), 0,  //
+               r(2, 0), r(2, 1), r(2, 2), 0, 0, 0, 0, 1}));
+  set(camera, "CameraType", text_of({double(c.type)}));
+  set(camera, "BinaryData", "0");
+  set(camera, "FocalMm", text_of({c.focal_mm}));
+  set(camera, "LensDistortion", text_of({c.distortion[0], c.distortion[1]}));
+  set(camera, "PixelSizeMm", text_of({c.pixel_mm[0], c.pixel_mm[1]}));
+  set(camera, "ViewportPx", text_of({double(c.viewport_px[0]), double(c.viewport_px[1])}));
+  set(camera, "CenterPx", text_of({c.center_px[0], c.center_px[1]}));
 }
 
 std::string named_from(const fs::path& folder, const std::string& file) {
@@ -221,76 +162,64 @@ std::string named_from(const fs::path& folder, const std::string& file) {
   return error || relative.empty() ? file : relative.generic_string();
 }
 
+std::string matrix_text(const Eigen::Matrix4d& matrix) {
+  std::string text = "\n";
+  for (int i = 0; i < 4; ++i, text += '\n')
+    for (int j = 0; j < 4; ++j, text += ' ') formats::append(text, matrix(i, j));
+  return text;
+}
+
 std::string project_text(const MlpProject& project, const fs::path& folder) {
-  std::string out = "<!DOCTYPE MeshLabDocument>\n<MeshLabProject>\n <MeshGroup>\n";
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype).set_value("MeshLabDocument");
+  pugi::xml_node root = document.append_child("MeshLabProject");
+  pugi::xml_node meshes = root.append_child("MeshGroup"), rasters = root.append_child("RasterGroup");
   for (const MlpMesh& m : project.meshes) {
-    out += "  <MLMesh";
-    append_attribute(out, "label", m.label);
-    append_attribute(out, "filename", named_from(folder, m.file));
-    append_attribute(out, "visible", "1");
-    out += ">\n   <MLMatrix44>\n";
-    for (int i = 0; i < 4; ++i, out += '\n')
-      for (int j = 0; j < 4; ++j, out += ' ') formats::append(out, m.matrix(i, j));
-    out += "</MLMatrix44>\n  </MLMesh>\n";
+    pugi::xml_node mesh = meshes.append_child("MLMesh");
+    set(mesh, "label", m.label);
+    set(mesh, "filename", named_from(folder, m.file));
+    set(mesh, "visible", "1");
+    mesh.append_child("MLMatrix44").text().set(matrix_text(m.matrix).c_str());
   }
-  out += " </MeshGroup>\n <RasterGroup>\n";
   for (const MlpRaster& r : project.rasters) {
-    out += "  <MLRaster";
-    append_attribute(out, "label", r.label);
-    out += ">\n" + camera_element(r.camera);
+    pugi::xml_node raster = rasters.append_child("MLRaster");
+    set(raster, "label", r.label);
+    add_camera(raster, r.camera);
     for (const MlpPlane& p : r.planes) {
-      out += "   <Plane";
-      append_attribute(out, "fileName", named_from(folder, p.file));
-      append_attribute(out, "semantic", {double(p.semantic)});
-      out += "/>\n";
+      pugi::xml_node plane = raster.append_child("Plane");
+      set(plane, "fileName", named_from(folder, p.file));
+      set(plane, "semantic", text_of({double(p.semantic)}));
     }
-    out += "  </MLRaster>\n";
   }
-  return out + " </RasterGroup>\n</MeshLabProject>\n";
+  std::ostringstream out;
+  document.save(out, " ", pugi::format_indent | pugi::format_no_declaration, pugi::encoding_utf8);
+  return out.str();
 }
 
 }  // namespace
 
-MlpProject read_mlp(const std::string& path) {
-  const std::string file = "The project \"" + path + "\" ";
-  std::error_code error;
-  if (!fs::exists(path, error)) throw UserError(file + "does not exist; check its name and folder.");
-  std::ifstream stream(path, std::ios::binary);
-  if (!fs::is_regular_file(path, error) || !stream)
-    throw UserError(file + "cannot be read; check that it is a file and may be opened.");
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (bytes.size() > std::size_t(INT_MAX)) throw UserError(file + "is too large for a MeshLab project; save it again.");
-  const std::string remedy = "; save it again with MeshLab.";
+MlpProject parse_mlp(const std::string& bytes) { return parsed(bytes); }
 
-  const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
-  if (!parser) throw std::bad_alloc();
-  Reader reader(fs::path(path).parent_path(), parser.get());
-  const XML_Status status = XML_Parse(parser.get(), bytes.data(), int(bytes.size()), XML_TRUE);
-  if (reader.error) try {
-      std::rethrow_exception(reader.error);
-    } catch (const Malformed& e) {
-      throw UserError(file + e.what() + remedy);
-    }
-  if (status != XML_STATUS_OK)
-    throw UserError(file + "is damaged in line " + std::to_string(XML_GetCurrentLineNumber(parser.get())) + " (" +
-                    XML_ErrorString(XML_GetErrorCode(parser.get())) + ")" + remedy);
-  if (!reader.is_project) throw UserError(file + "is not a MeshLab project" + remedy);
-  return std::move(reader.project);
+MlpProject read_mlp(const std::string& path) {
+  const InputFile file(path, kNamed);
+  try {
+    if (file.read(0, 1000).find('<') == std::string::npos) throw Malformed("is damaged (it is not XML)");
+    MlpProject project = parsed(file.read_all());
+    place_files(project, path);
+    return project;
+  } catch (const Malformed& e) {
+    throw UserError(kNamed + (" \"" + path + "\" ") + e.what() + "; save it again with MeshLab.");
+  }
+}
+
+void add_mlp(OutputFiles& files, const MlpProject& project, const std::string& path) {
+  files.add(path, project_text(project, folder_of(path)), kNamed);
 }
 
 void write_mlp(const MlpProject& project, const std::string& path) {
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  const std::string text = project_text(project, folder);
-  const std::string draft = path + ".part";
-  std::ofstream file(draft, std::ios::binary);
-  file.write(text.data(), std::streamsize(text.size()));
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(draft, path, error);
-  if (!file || error) {
-    fs::remove(draft, error);
-    throw UserError("The project \"" + path + "\" cannot be written; check its folder and the space left.");
-  }
+  OutputFiles files;
+  add_mlp(files, project, path);
+  files.commit();
 }
 
 }  // namespace parts::io

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "parts/base/files.h"
 #include "parts/mesh/mesh.h"
 
 namespace parts::io {
@@ -65,8 +66,15 @@ struct MlpProject {
 ///                    camera that is not made of finite numbers
 MlpProject read_mlp(const std::string& path);
 
+/// The same of a project's text; file names stay as they are.
+/// @throws formats::Malformed
+MlpProject parse_mlp(const std::string& bytes);
+
 /// Files are named relative to the project's folder where that is possible.
 /// @throws UserError  the file cannot be written
 void write_mlp(const MlpProject& project, const std::string& path);
+
+/// The same as one of several files.
+void add_mlp(OutputFiles& files, const MlpProject& project, const std::string& path);
 
 }  // namespace parts::io

@@ -18,16 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower_extension(const fs::path& path) {
-  std::string e = path.extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return e;
-}
-
-bool is_mesh_file(const fs::path& path) {
-  const std::string e = lower_extension(path);
-  return e == ".ply" || e == ".obj" || e == ".off" || e == ".stl";
-}
+bool is_mesh_file(const fs::path& path) { return ends_in(path, {".ply", ".obj", ".off", ".stl"}); }
 
 std::vector<fs::path> mesh_files(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -123,7 +114,7 @@ ModelDatabase::ModelDatabase(const std::string& given, Progress& progress) : pat
     return;
   }
   if (!fs::exists(path, error)) throw UserError(database + "does not exist; check its name and folder.");
-  if (lower_extension(path) != ".mlp")
+  if (!ends_in(path, {".mlp"}))
     throw UserError(database + "is neither a folder nor a MeshLab project (.mlp); choose one of these.");
   for (const MlpMesh& mesh : read_mlp(path).meshes) {
     const std::string name =
@@ -138,9 +129,13 @@ ModelDatabase::ModelDatabase(const std::string& given, Progress& progress) : pat
   if (models_.empty()) throw UserError(database + "has no mesh that can be read; add models to the project.");
 }
 
-Mesh ModelDatabase::load(int model) const {
+void log_missing(const std::string& model, const std::vector<std::string>& missing, Progress& progress) {
+  for (const std::string& name : missing) progress.log("missing: " + model + " (it names \"" + name + "\")");
+}
+
+Mesh ModelDatabase::load(int model, const Poll& poll, std::vector<std::string>* missing) const {
   const Model& m = models_.at(std::size_t(model));
-  Mesh mesh = read_mesh(m.file);
+  Mesh mesh = read_mesh(m.file, poll, missing);
   use_world_space(mesh, m.matrix);
   const std::string why = flaw(mesh);
   if (!why.empty()) throw UserError("The model \"" + m.name + "\" " + why + "; repair it or take it out.");
@@ -151,7 +146,10 @@ Mesh ModelDatabase::load(int model) const {
 
 std::optional<Mesh> ModelDatabase::load_or_skip(int model, Progress& progress) const {
   try {
-    return load(model);
+    std::vector<std::string> missing;
+    Mesh mesh = load(model, {}, &missing);
+    log_missing(name(model), missing, progress);
+    return mesh;
   } catch (const UserError& e) {
     progress.log("skipped: " + name(model) + " (" + e.what() + ")");
     return {};

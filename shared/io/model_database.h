@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "parts/base/files.h"
 #include "parts/base/progress.h"
 #include "parts/mesh/mesh.h"
 
@@ -29,11 +30,13 @@ class ModelDatabase {
 
   /// The model in world space, with all its attributes; oriented as in its file
   /// even where its matrix mirrors.
+  /// @param missing  optional: materials and textures that it names and that are not there
   /// @throws UserError  it cannot be read, or has no face, no extent or a
   ///                    coordinate that is not finite
-  Mesh load(int model) const;
+  Mesh load(int model, const Poll& poll = {}, std::vector<std::string>* missing = nullptr) const;
 
-  /// The same, but a model that cannot be used is logged, "skipped: name (why)", and nothing.
+  /// The same, but a model that cannot be used is logged, "skipped: name (why)", and
+  /// nothing; what it names and is not there is logged too, "missing: name (what)".
   std::optional<Mesh> load_or_skip(int model, Progress& progress) const;
 
  private:
@@ -44,6 +47,9 @@ class ModelDatabase {
   std::string path_;
   std::vector<Model> models_;
 };
+
+/// Logs what a model names and is not there.
+void log_missing(const std::string& model, const std::vector<std::string>& missing, Progress& progress);
 
 /// Whether a comes before b where runs of digits count as numbers.
 bool natural_less(const std::string& a, const std::string& b);

@@ -4,72 +4,85 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "parts/base/error.h"
 #include "parts/base/memory.h"
-#include "parts/io/image_size.h"
+#include "parts/io/image_head.h"
+#include "parts/io/pfm.h"
 
 namespace parts::io {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kMostPixels = double(1 << 15) * (1 << 15);  // what OpenCV's decoders take
-
-std::string extension(const std::string& path) {
-  std::string e = fs::path(path).extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return e;
-}
+constexpr double kFewPixels = 25e6;                          // decoded in well under a second, whatever they hold
+constexpr double kDensest = 600;                             // decoded bytes of a byte, beyond that
+constexpr double kMostBytes = std::numeric_limits<int>::max();
 
 std::string named(const std::string& path) { return "The file \"" + path + "\" "; }
 
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f GB", bytes / 1e9);
-  return text;
-}
-
-/// Refuses what does not fit, before it is allocated.
-void check_size(const std::string& path) {
-  const std::optional<ImageHead> head = read_image_head(path);
-  if (!head) return;
-  const double pixels = head->width * head->height, bytes = pixels * (2 * head->bytes + 8), free = available_memory();
+/// Refuses what does not fit, or takes long and holds nothing, before it is decoded.
+void check_size(const std::string& path, const ImageHead& head, double file_bytes) {
+  const double pixels = head.width * head.height, bytes = pixels * (2 * head.bytes + 8);
+  const std::optional<double> free = available_memory();
   char size[64];
-  std::snprintf(size, sizeof size, "%.0f x %.0f pixels", head->width, head->height);
+  std::snprintf(size, sizeof size, "%.0f x %.0f pixels", head.width, head.height);
   if (pixels > kMostPixels)
     throw UserError(named(path) + "says that it has " + size + ", which is more than can be read; make it smaller.");
-  if (free > 0 && bytes > free)
-    throw UserError(named(path) + "has " + size + ", which need " + gigabytes(bytes) + " of memory, and " +
-                    gigabytes(free) + " are free; make it smaller.");
+  if (free && bytes > *free)
+    throw UserError(named(path) + "has " + size + ", which need " + readable_size(bytes) + " of memory, and " +
+                    readable_size(*free) + " are free; make it smaller.");
+  if (file_bytes > kMostBytes)
+    throw UserError(named(path) + "has " + readable_size(file_bytes) +
+                    ", which is more than can be read; make it smaller.");
+  if (pixels > kFewPixels && pixels * head.bytes > kDensest * file_bytes)
+    throw UserError(named(path) + "says that its " + readable_size(file_bytes) + " hold " + size +
+                    ", which no picture of something does; make it smaller.");
 }
 
-/// The file as its format has it, turned upright.
-cv::Mat read_any(const std::string& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) throw UserError(named(path) + "does not exist; check its name and folder.");
-  if (!fs::is_regular_file(path, error))
-    throw UserError(named(path) + "is a folder or a device; choose an image file.");
-  if (fs::file_size(path, error) == 0) throw UserError(named(path) + "is empty; save the image again.");
-  check_size(path);
-  cv::Mat image;
+struct Decoded {
+  cv::Mat pixels;  ///< as the format has them
+  int orientation = 1;
+};
+
+cv::Mat decode(const std::string& bytes, const ImageHead& head) {
+  if (head.pfm) return parse_pfm(bytes);
   try {
-    // Only photographs say how the camera was held, and only without IMREAD_UNCHANGED is that heeded.
-    const std::string e = extension(path);
-    const bool photograph = e == ".jpg" || e == ".jpeg";
-    image = cv::imread(path, photograph ? cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH : cv::IMREAD_UNCHANGED);
+    const cv::Mat view(1, int(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    return cv::imdecode(view, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& e) {
     if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    return {};
+  }
+}
+
+Decoded read_any(const std::string& path, const Poll& poll) {
+  const InputFile file(path);
+  if (file.size() == 0) throw UserError(named(path) + "is empty; save the image again.");
+  const std::optional<ImageHead> head = read_image_head(file);
+  cv::Mat image;
+  if (head) {
+    check_size(path, *head, double(file.size()));
+    const std::string bytes = file.read_all(std::uint64_t(kMostBytes), poll);
+    if (poll) poll();
+    image = decode(bytes, *head);
   }
   if (image.empty())
     throw UserError(named(path) + "cannot be read as an image; check that it is whole, or save it as PNG or TIFF.");
-  return image;
+  return {image, head->orientation};
+}
+
+/// The image as the camera saw it. EXIF 2.3, 4.6.4: 2 mirrored, 3 turned by half a
+/// turn, 4 both, 5 to 8 with rows and columns exchanged.
+cv::Mat upright(const cv::Mat& image, int orientation) {
+  cv::Mat turned = image;
+  if (orientation >= 5) cv::transpose(image, turned);
+  const bool across = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+  const bool down = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+  if (across || down) cv::flip(turned, turned, across && down ? -1 : across ? 1 : 0);
+  return turned;
 }
 
 /// To 8 bits a channel.
@@ -90,69 +103,16 @@ cv::Mat to_bytes(const cv::Mat& image, const std::string& path) {
   return bytes;
 }
 
-UserError unwritable(const std::string& path) {
-  return UserError(named(path) + "cannot be written; check its folder and the space left.");
-}
-
-/// OpenCV goes by the ending.
-fs::path draft_of(const fs::path& target) {
-  fs::path draft = target;
-  return draft.replace_filename(target.stem().string() + ".part" + target.extension().string());
-}
-
-void write_draft(const cv::Mat& image, const std::string& path) {
-  std::error_code error;
-  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw unwritable(path);
-  bool written = false;
-  try {
-    written = cv::imwrite(draft_of(path).string(), image);
-  } catch (const cv::Exception& e) {
-    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
-  }
-  if (written) return;
-  fs::remove(draft_of(path), error);
-  throw unwritable(path);
-}
-
-void place_draft(const std::string& path) {
-  std::error_code error, ignored;
-  fs::rename(draft_of(path), path, error);
-  if (!error) return;
-  fs::remove(draft_of(path), ignored);
-  throw unwritable(path);
-}
-
-template <size_t n>
-bool ends_in(const std::string& path, const char* const (&endings)[n]) {
-  return std::find(std::begin(endings), std::end(endings), extension(path)) != std::end(endings);
-}
-
-void check_depth_ending(const std::string& path) {
-  if (!ends_in(path, {".tif", ".tiff", ".pfm"}))
-    throw UserError(named(path) + "has no ending that depth can be written with; use .tif or .pfm.");
-}
-
-void check_image_ending(const std::string& path) {
-  if (!ends_in(path, {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp"}))
-    throw UserError(named(path) + "has no ending that an image can be written with; use .png, .jpg, .tif or .bmp.");
-}
-
-void check_folder(const std::string& path) {
-  std::error_code error;
-  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw unwritable(path);
-  const fs::path draft = draft_of(path);
-  const bool there = bool(std::ofstream(draft));
-  fs::remove(draft, error);
-  if (!there) throw unwritable(path);
-}
-
 }  // namespace
 
-Image read_image(const std::string& path) {
-  const cv::Mat bytes = to_bytes(read_any(path), path);
+Image read_image(const std::string& path, Turn turn, const Poll& poll) {
+  const Decoded stored = read_any(path, poll);
+  const cv::Mat bytes =
+      to_bytes(turn == Turn::Upright ? upright(stored.pixels, stored.orientation) : stored.pixels, path);
   std::vector<cv::Mat> planes;
   cv::split(bytes, planes);
   Image image;
+  image.orientation = stored.orientation;
   if (planes.size() == 2 || planes.size() == 4) {
     cv::compare(planes.back(), 128, image.mask, cv::CMP_GE);
     const int seen = cv::countNonZero(image.mask);
@@ -170,8 +130,23 @@ Image read_image(const std::string& path) {
   return image;
 }
 
-cv::Mat read_mask(const std::string& path, cv::Size size) {
-  const Image image = read_image(path);
+cv::Mat read_stored(const std::string& path, const Poll& poll) { return read_any(path, poll).pixels; }
+
+cv::Mat read_texture(const std::string& path) {
+  const cv::Mat bytes = to_bytes(read_any(path, {}).pixels, path);
+  std::vector<cv::Mat> planes;
+  cv::split(bytes, planes);
+  if (planes.size() == 2 || planes.size() == 4) planes.pop_back();
+  if (planes.size() == 1) planes.resize(3, planes[0]);
+  if (planes.size() != 3)
+    throw UserError(named(path) + "has " + std::to_string(planes.size()) + " channels; save it as grey, RGB or RGBA.");
+  cv::Mat color;
+  cv::merge(planes, color);
+  return color;
+}
+
+cv::Mat read_mask(const std::string& path, cv::Size size, Turn turn) {
+  const Image image = read_image(path, turn);
   if (!size.empty() && image.mask.size() != size)
     throw UserError("The mask \"" + path + "\" has " + std::to_string(image.mask.cols) + " x " +
                     std::to_string(image.mask.rows) + " pixels and its image " + std::to_string(size.width) + " x " +
@@ -186,8 +161,8 @@ cv::Mat read_mask(const std::string& path, cv::Size size) {
   return mask;
 }
 
-cv::Mat read_depth(const std::string& path, double scale) {
-  cv::Mat raw = read_any(path);
+cv::Mat read_depth(const std::string& path, double scale, const Poll& poll) {
+  cv::Mat raw = read_any(path, poll).pixels;
   if (raw.channels() > 1) {  // some programs write the one channel three times
     std::vector<cv::Mat> planes;
     cv::split(raw, planes);
@@ -223,54 +198,6 @@ cv::Mat read_depth(const std::string& path, double scale) {
   if (seen == 0)
     throw UserError(named(path) + "is background everywhere (0, infinite or not a number); save the depth again.");
   return depth;
-}
-
-void write_depth(const cv::Mat& depth, const std::string& path) {
-  check_depth_ending(path);
-  write_draft(depth, path);
-  place_draft(path);
-}
-
-void write_image(const cv::Mat& image, const std::string& path) {
-  check_image_ending(path);
-  write_draft(image, path);
-  place_draft(path);
-}
-
-void OutputFiles::check_depth(const std::string& path) {
-  if (path.empty()) return;
-  check_depth_ending(path);
-  check_folder(path);
-}
-
-void OutputFiles::check_image(const std::string& path) {
-  if (path.empty()) return;
-  check_image_ending(path);
-  check_folder(path);
-}
-
-OutputFiles::~OutputFiles() {
-  std::error_code ignored;
-  for (const std::string& path : paths_) fs::remove(draft_of(path), ignored);
-}
-
-void OutputFiles::depth(const cv::Mat& depth, const std::string& path) {
-  if (path.empty()) return;
-  check_depth_ending(path);
-  write_draft(depth, path);
-  paths_.push_back(path);
-}
-
-void OutputFiles::image(const cv::Mat& image, const std::string& path) {
-  if (path.empty()) return;
-  check_image_ending(path);
-  write_draft(image, path);
-  paths_.push_back(path);
-}
-
-void OutputFiles::commit() {
-  for (const std::string& path : paths_) place_draft(path);
-  paths_.clear();
 }
 
 cv::Mat with_alpha(const cv::Mat& color, const cv::Mat& mask) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "parts/base/error.h"
+#include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/mesh/attributes.h"
 #include "parts/render/pixel_faces.h"
@@ -91,12 +92,11 @@ void check_input(const cv::Mat& depth, const cv::Mat& back, const Camera& camera
     throw UserError(
         "Some depths are negative, where a pinhole camera sees nothing; change the sign of DepthScale, or "
         "set FocalLength to 0.");
-  const double bytes = kBytesPerPixel * seen * (back.empty() ? 1 : 2), free = available_memory();
-  if (free > 0 && bytes > free) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.1f GB of memory, and %.1f GB are free", bytes / 1e9, free / 1e9);
-    throw UserError("A mesh of this depth raster needs " + std::string(text) + "; make the raster smaller.");
-  }
+  const double bytes = kBytesPerPixel * seen * (back.empty() ? 1 : 2);
+  const std::optional<double> free = available_memory();
+  if (free && bytes > *free)
+    throw UserError("A mesh of this depth raster needs " + readable_size(bytes) + " of memory, and " +
+                    readable_size(*free) + " are free; make the raster smaller.");
 }
 
 /// Turns faces between pixels into a mesh.

@@ -14,7 +14,6 @@ namespace parts::render {
 struct Textures {
   std::vector<std::vector<cv::Mat>> images;
 };
-Textures load_textures(const Mesh& mesh);
 
 struct RenderOptions {
   bool smooth = true;              ///< normals of vertices (the mesh's own, or means); false: of faces

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "parts/io/raster_io.h"
 #include "parts/render/rasterize.h"
 
 namespace parts::render {
@@ -16,10 +15,9 @@ Textures load_textures(const Mesh& mesh) {
   for (const std::string& file : mesh.textures) {
     std::vector<cv::Mat> levels;
     cv::Mat image;
-    std::error_code error;
     try {
-      if (std::filesystem::is_regular_file(file, error)) image = cv::imread(file, cv::IMREAD_COLOR);
-    } catch (const cv::Exception&) {  // larger than OpenCV reads
+      image = io::read_texture(file);
+    } catch (const UserError&) {  // as if there were none
     }
     while (!image.empty()) {
       levels.push_back(image);

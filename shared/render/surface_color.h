@@ -9,6 +9,9 @@ namespace parts::render {
 
 struct Textures;
 
+/// The images that a mesh names, as they are stored; see Textures.
+Textures load_textures(const Mesh& mesh);
+
 /// B, G and R, 0..255.
 Eigen::Vector3f bgr(const Color& c);
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/render/texture.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "parts/base/error.h"
@@ -16,8 +14,8 @@ namespace fs = std::filesystem;
 /// What the host reads, which heeds neither alpha nor how a camera was held.
 cv::Mat as_stored(const std::string& path) {
   try {
-    return cv::imread(path, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
+    return io::read_stored(path);
+  } catch (const UserError&) {
     return {};
   }
 }
@@ -31,10 +29,7 @@ bool has_picture(const fs::path& file, const cv::Mat& picture) {
 }  // namespace
 
 bool shows_as_texture(const std::string& path, const io::Image& image) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  const char* endings[] = {".png", ".jpg", ".jpeg", ".bmp"};
-  if (std::find(std::begin(endings), std::end(endings), ending) == std::end(endings) || image.has_alpha) return false;
+  if (!ends_in(path, {".png", ".jpg", ".jpeg", ".bmp"}) || image.has_alpha) return false;
   const cv::Mat stored = as_stored(path);
   if (stored.depth() != CV_8U || stored.size() != image.color.size()) return false;
   if (stored.channels() == 4 || stored.channels() == 2) return true;
@@ -58,26 +53,25 @@ cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask) {
   return out;
 }
 
-std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const TextureTarget& target) {
+std::string add_texture(OutputFiles& files, const cv::Mat& color, const cv::Mat& mask, const TextureTarget& target) {
   const cv::Mat picture = extend_colors(color, mask);
   std::error_code error;
   if (!target.file.empty()) {
     for (const std::string& input : target.inputs)
       if (!input.empty() && fs::equivalent(input, target.file, error))
         throw UserError("The texture would replace the input \"" + input + "\"; give another TextureFile.");
-    io::write_image(picture, target.file);
+    io::add_image(files, picture, target.file);
     return fs::absolute(target.file).lexically_normal().string();
   }
   const fs::path base = fs::absolute(target.beside);
   for (int n = 1;; ++n) {
     const std::string name = base.stem().string() + "_texture" + (n > 1 ? "_" + std::to_string(n) : "") + ".png";
     const fs::path file = (base.parent_path() / name).lexically_normal();
-    if (fs::exists(file, error)) {
-      if (has_picture(file, picture)) return file.string();
-      continue;
+    if (files.reserve(file)) {
+      io::add_image(files, picture, file.string());
+      return file.string();
     }
-    io::write_image(picture, file.string());
-    return file.string();
+    if (has_picture(file, picture)) return file.string();
   }
 }
 

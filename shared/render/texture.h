@@ -21,13 +21,13 @@ struct TextureTarget {
   std::vector<std::string> inputs;  ///< files that are never replaced
 };
 
-/// Writes an image as a texture, the colours of the foreground extended over the
+/// Adds an image as a texture to the files of a result, the colours of the foreground extended over the
 /// rest, so that no background shows at silhouettes. Without target.file the name
 /// is the first of x_texture.png, x_texture_2.png ... that is free or has that
-/// very picture already.
+/// very picture already; no other run can take it meanwhile.
 /// @return the file, absolute
 /// @throws UserError  target.file is an input, or it cannot be written
-std::string write_texture(const cv::Mat& color, const cv::Mat& mask, const TextureTarget& target);
+std::string add_texture(OutputFiles& files, const cv::Mat& color, const cv::Mat& mask, const TextureTarget& target);
 
 /// The same as an image in memory.
 cv::Mat extend_colors(const cv::Mat& color, const cv::Mat& mask);

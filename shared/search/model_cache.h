@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "parts/io/model_database.h"
-#include "parts/search/model_raster.h"
+#include "parts/search/raster_file.h"
 
 namespace parts::search {
 
@@ -16,7 +17,9 @@ namespace parts::search {
 /// model). A file counts only if it was made by this version of the code for a
 /// model file of that size, time, content (a sample of it) and matrix, and is
 /// whole: anything else is made anew. Files are replaced at once (rename), so
-/// that runs at the same time do each other no harm.
+/// that runs at the same time do each other no harm. A run that makes files takes
+/// away those of models that are gone from a folder, and those that no run has
+/// used for thirty days.
 class ModelCache {
  public:
   struct Options {
@@ -39,22 +42,13 @@ class ModelCache {
 
   int made() const { return made_; }  ///< by fill, not read from files
 
-  /// What a file was made from.
-  struct Key {
-    std::uint64_t size = 0, time = 0, content = 0, matrix = 0, levels = 0;
-    bool operator==(const Key& k) const {
-      return size == k.size && time == k.time && content == k.content && matrix == k.matrix && levels == k.levels;
-    }
-  };
-  static std::string encode(const ModelRaster& raster, const Key& key);
-  /// Nothing if the bytes are not exactly what encode() makes for that key.
-  static std::unique_ptr<ModelRaster> decode(const std::string& bytes, const Key& key);
-
  private:
   std::string file(int model) const;
-  Key key(int model) const;
+  bool is_orphan(const std::filesystem::path& entry) const;
+  void prune() const;
+  RasterKey key(int model) const;
   std::unique_ptr<ModelRaster> read(int model) const;
-  bool write(int model, const ModelRaster& raster, const Key& key) const;
+  bool write(int model, const ModelRaster& raster, const RasterKey& key) const;
 
   const io::ModelDatabase& database_;
   Options options_;

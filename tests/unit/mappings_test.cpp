@@ -5,17 +5,21 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
 #include "parts/base/error.h"
 #include "parts/examples/build_mappings.h"
 #include "parts/examples/examples.h"
+#include "parts/examples/stored_examples.h"
+#include "parts/io/class_preset.h"
 #include "parts/io/mesh_io.h"
 #include "parts/io/mlp_project.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/mlp_camera.h"
 #include "support/cameras.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -23,18 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace parts::test;
-
-template <class Call>
-std::string sentence(const Call& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    EXPECT_EQ(std::string(e.what()).back(), '.');
-    return e.what();
-  }
-  ADD_FAILURE() << "no UserError";
-  return {};
-}
 
 bool same(const cv::Mat& a, const cv::Mat& b) {  // bit for bit but for the bits of NaN
   if (a.size() != b.size() || a.type() != b.type()) return false;
@@ -217,7 +209,87 @@ TEST_F(Mappings, BuildingAgainReplaces) {
   int images = 0;
   for (const std::string& name : files()) images += name.find("class_mappings/0") == 0;
   EXPECT_EQ(images, 3 * 4 + 1) << "files of the old views are gone";
+  EXPECT_TRUE(fs::exists(folder / "class_mappings" / "manifest.json"));
   EXPECT_TRUE(fs::exists(folder / "class_mappings" / "mine.txt"));
+}
+
+TEST_F(Mappings, ModelsInTheFolderOfTheDatabaseStay) {
+  fs::create_directories(folder / "class_mappings");
+  for (const char* name : {"m0.ply", "m1.ply"})
+    fs::copy_file(folder / "models/blob_0.ply", folder / "class_mappings" / name);
+  const auto run = [&] {
+    examples::build_mappings(io::ModelDatabase(at("class_mappings"), progress), views, at("class.mlp"), options,
+                             progress);
+  };
+  build(at("class.mlp"));
+  io::MlpProject project = io::read_mlp(at("class.mlp"));  // as MeshLab saves it with the models open
+  for (const char* name : {"class_mappings/m0.ply", "class_mappings/m1.ply"})
+    project.meshes.push_back({name, at(name)});
+  io::write_mlp(project, at("class.mlp"));
+  build(at("class.mlp"));
+  EXPECT_TRUE(fs::exists(at("class_mappings/m0.ply")));
+  EXPECT_TRUE(fs::exists(at("class_mappings/m1.ply")));
+  // And where they, and the surface of the database itself, are the models.
+  const std::string surface = io::read_mlp(at("class.mlp")).meshes.at(0).file;
+  views = {{10, 0}};
+  run();
+  EXPECT_TRUE(fs::exists(surface)) << "it was an input";
+  EXPECT_TRUE(fs::exists(at("class_mappings/m0.ply")));
+  EXPECT_TRUE(fs::exists(at("class_mappings/m1.ply")));
+}
+
+TEST_F(Mappings, AUsersFileOfANewFilesNameIsNotReplaced) {
+  fs::create_directories(folder / "class_mappings");
+  const fs::path mine = folder / "class_mappings/000_blob_0_0_0_depth.tif";
+  std::ofstream(mine) << "mine";
+  const std::set<std::string> before = files();
+  EXPECT_NE(sentence([&] { build(at("class.mlp")); }).find("would be replaced"), std::string::npos);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Mappings, HandSetWeightsSurviveARebuild) {
+  std::ofstream(folder / "models/class.json")
+      << R"({ "reconstruct_depth": { "WeightDepth": 3, "WeightPosition": 7 } })";
+  build(at("class.mlp"));
+  EXPECT_EQ(*io::read_class_preset(at("class.mlp")).number("reconstruct_depth", "WeightPosition"), 7);
+  std::ofstream(folder / "class.class.json")
+      << R"({ "Up": [0, 1, 0], "note": ["by hand"], "reconstruct_depth": { "WeightPosition": 42 } })";
+  build(at("class.mlp"));
+  const io::ClassPreset preset = io::read_class_preset(at("class.mlp"));
+  EXPECT_EQ(*preset.number("reconstruct_depth", "WeightPosition"), 42);
+  EXPECT_EQ(*preset.number("reconstruct_depth", "WeightDepth"), 3);
+  std::ifstream file(at("class.class.json"));
+  EXPECT_NE(std::string(std::istreambuf_iterator<char>(file), {}).find("by hand"), std::string::npos);
+}
+
+TEST_F(Mappings, AFailureLeavesTheOldDatabase) {
+  build(at("class.mlp"));
+  const std::set<std::string> before = files();
+  const auto time = fs::last_write_time(at("class.mlp"));
+  std::ofstream(folder / "class.class.json") << "[";  // found late
+  views = {{10, 0}};
+  EXPECT_NE(sentence([&] { build(at("class.mlp")); }).find("class preset"), std::string::npos);
+  EXPECT_EQ(files(), before);
+  EXPECT_EQ(fs::last_write_time(at("class.mlp")), time);
+}
+
+TEST_F(Mappings, PresetsThatBreakAParser) {
+  const std::string deep(200000, '['), pairs = [] {
+    std::string s;
+    for (int i = 0; i < 50000; ++i) s += "{\"a\":";
+    return s;
+  }();
+  for (const std::string& text :
+       {std::string("<?xml version="), "{\"a\":" + deep, deep, pairs, std::string("{\"a\": 1e999}"), std::string("[1]"),
+        std::string(), "{\"a\":" + std::string(40, '[') + std::string(40, ']') + "}"}) {
+    EXPECT_FALSE(io::parse_class_preset(text)) << text.substr(0, 30);
+    keep_for_corpus("json", text);
+    std::ofstream(folder / "models/class.json") << text;
+    EXPECT_NE(sentence([&] { io::read_class_preset(at("models")); }).find("The class preset"), std::string::npos);
+  }
+  EXPECT_EQ(
+      io::parse_class_preset(R"({ "f": { "A": true, "B": 1.5, "C": "x", "D": [1], "E": null } })")->values.at("f"),
+      (std::map<std::string, std::string>{{"A", "1"}, {"B", "1.5"}, {"C", "x"}}));
 }
 
 TEST_F(Mappings, CancellingLeavesNothing) {

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
 #include "parts/base/error.h"
+#include "parts/mesh/arrays.h"
 #include "parts/mesh/topology.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -25,10 +30,17 @@ class MeshIo : public ::testing::Test {
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (const std::string ending = lower_extension(entry.path()); entry.is_regular_file() && !ending.empty())
+        if (entry.file_size() < 65536) test::keep_for_corpus(ending.substr(1), test::contents(entry.path()));
+    fs::remove_all(folder_);
+  }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   std::string file(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
+    if (const std::string ending = lower_extension(name); !ending.empty())
+      test::keep_for_corpus(ending.substr(1), bytes);
     return path(name);
   }
   Mesh read(const std::string& name, const std::string& bytes) const { return io::read_mesh(file(name, bytes)); }
@@ -88,7 +100,7 @@ TEST_F(MeshIo, PlyKeepsEverything) {
   EXPECT_EQ(back.face_selected, mesh.face_selected);
   expect_same_wedges(back, mesh);
   EXPECT_EQ(back.textures, (std::vector<std::string>{path("a b.png"), path("c.jpg")}));
-  EXPECT_FALSE(fs::exists(path("m.ply.part")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "no drafts are left";
 }
 
 TEST_F(MeshIo, PlyOfFloatsIsSmaller) {
@@ -321,6 +333,154 @@ TEST_F(MeshIo, StlCornersAreWelded) {
   EXPECT_EQ(text.face_count(), 2);
 }
 
+TEST_F(MeshIo, StlDialects) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.0E+000 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  std::string upper = "solid x\n" + facet + "endsolid x\n";
+  for (char& c : upper) c = char(std::toupper(static_cast<unsigned char>(c)));
+  EXPECT_EQ(read("upper.stl", upper).face_count(), 1);
+  EXPECT_EQ(read("blank.stl", "\xEF\xBB\xBF  solid x\r\n" + facet + "endsolid\r\n").face_count(), 1);
+  EXPECT_EQ(read("two.stl", "solid a\n" + facet + "endsolid a\nsolid b\n" + facet + "endsolid b\n").face_count(), 2);
+  const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  EXPECT_EQ(read("padded.stl", stl(corners, 1) + std::string(2, '\0')).face_count(), 1);
+  std::string old_mac = "solid x\n" + facet + "endsolid x\n";
+  std::replace(old_mac.begin(), old_mac.end(), '\n', '\r');
+  EXPECT_EQ(read("mac.stl", old_mac).face_count(), 1);
+}
+
+TEST_F(MeshIo, SeveralListsOfFacesHaveWholeAttributes) {
+  const std::string head = "ply\nformat ascii 1.0\ncomment TextureFile t.png\nelement vertex 3\n" + kXyz,
+                    plain = "element face 2\n" + kIndices,
+                    dressed = "element face 1\n" + kIndices +
+                              "property list uchar float texcoord\nproperty uchar red\nproperty float quality\n"
+                              "property int flags\n",
+                    two = "3 0 1 2\n3 2 1 0\n", one = "3 0 1 2 6 0 0 1 0 0 1 77 0.5 32\n", end = "end_header\n" + kBody;
+  for (const bool plain_first : {true, false}) {
+    const Mesh m =
+        read("two.ply", head + (plain_first ? plain + dressed + end + two + one : dressed + plain + end + one + two));
+    ASSERT_EQ(m.face_count(), 3);
+    ASSERT_EQ(m.face_color.size(), 3u);
+    ASSERT_EQ(m.face_quality.size(), 3u);
+    ASSERT_EQ(m.face_selected.size(), 3u);
+    ASSERT_EQ(m.wedges.size(), 3u);
+    const int with = plain_first ? 2 : 0, without = plain_first ? 0 : 2;
+    EXPECT_EQ(m.face_color[with][0], 77);
+    EXPECT_EQ(m.face_color[without], (Color{255, 255, 255, 255}));
+    EXPECT_EQ(m.wedges[with].texture, 0);
+    EXPECT_EQ(m.wedges[without].texture, -1);
+    EXPECT_EQ(m.face_selected[with], 1);
+    EXPECT_EQ(m.face_quality[without], 0);
+  }
+}
+
+TEST(Arrays, FlawsAreSeen) {
+  const auto flawed = [](const auto& change) {
+    Mesh m = with_everything();
+    EXPECT_EQ(mesh::array_flaw(m), "");
+    change(m);
+    return !mesh::array_flaw(m).empty();
+  };
+  EXPECT_EQ(mesh::array_flaw({}), "");
+  EXPECT_TRUE(flawed([](Mesh& m) { m.faces[3][1] = m.vertex_count(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.faces[3][1] = -1; }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.face_color.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.face_quality.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.face_selected.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.wedges.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.wedges[0].texture = 2; }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.wedges[0].texture = -2; }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.vertex_color.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.vertex_normal.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.vertex_quality.pop_back(); }));
+  EXPECT_TRUE(flawed([](Mesh& m) { m.vertex_selected.pop_back(); }));
+}
+
+TEST_F(MeshIo, AFlawedMeshIsNotWritten) {
+  Mesh mesh = with_everything();
+  mesh.face_color.pop_back();
+  EXPECT_THROW(io::write_mesh(mesh, path("m.ply")), std::logic_error);
+  EXPECT_FALSE(fs::exists(path("m.ply")));
+}
+
+TEST_F(MeshIo, MaterialsOfTheField) {
+  const std::string obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
+  file("skin one.png", "");
+  fs::create_directories(path("tex"));
+  file("tex/Inner.JPG", "");
+  const std::string latin = "K\xf6pfe.png", utf8 = "K\xc3\xb6pfe.png";
+  file(utf8, "");
+  const std::pair<std::string, std::string> lines[] = {
+      {"map_kd skin one.png", "skin one.png"},
+      {"MAP_KD skin one.png ", "skin one.png"},
+      {"map_Kd -s 1 1 1 skin one.png", "skin one.png"},
+      {"map_Kd -blendu on -o 0.5 0 -mm 0 1 -clamp on -bm 1 skin one.png", "skin one.png"},
+      {"map_Kd \"skin one.png\"", "skin one.png"},
+      {"map_Kd -s 1 1 \"skin one.png\"", "skin one.png"},
+      {"map_Kd C:\\Users\\u\\tex\\inner.jpg", "tex/Inner.JPG"},
+      {"map_Kd tex\\Inner.JPG", "tex/Inner.JPG"},
+      {"map_Kd /home/u/scans/SKIN ONE.PNG", "skin one.png"},
+      {"map_Kd " + latin, utf8},
+  };
+  for (const auto& [line, found] : lines) {
+    file("m.mtl", "\xEF\xBB\xBF# x\r\nnewmtl a\r\n" + line + "\r\n");
+    std::vector<std::string> missing;
+    const Mesh mesh = io::read_mesh(file("m.obj", obj), {}, &missing);
+    ASSERT_EQ(mesh.textures.size(), 1u) << line;
+    EXPECT_EQ(mesh.textures[0], path(found)) << line;
+    EXPECT_TRUE(missing.empty()) << line;
+    EXPECT_EQ(mesh.wedges[0].texture, 0);
+  }
+  file("m.mtl", "newmtl a\nmap_Kd lost.png\n");
+  std::vector<std::string> missing;
+  io::read_mesh(file("m.obj", obj), {}, &missing);
+  EXPECT_EQ(missing, (std::vector<std::string>{"lost.png"}));
+  fs::remove(path("m.mtl"));
+  io::read_mesh(path("m.obj"), {}, &missing);
+  EXPECT_EQ(missing, (std::vector<std::string>{"m.mtl"}));
+}
+
+TEST_F(MeshIo, PolygonsOfManyCornersAreQuick) {
+  // A spiral, of which most corners that stick out are no ears: 100 times 1000 corners.
+  std::string off = "OFF\n1000 100 0\n", face = "1000";
+  for (int i = 0; i < 1000; ++i) {
+    const int k = i < 500 ? i : 999 - i;
+    const double a = k * 0.15, r = 1 + a + (i < 500 ? 0 : 2.9);
+    off += std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a)) + " 0\n";
+    face += " " + std::to_string(i);
+  }
+  for (int f = 0; f < 100; ++f) off += face + "\n";
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(read("spiral.off", off).face_count(), 100 * 998);
+  EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20) << "minutes, if each cut looks at all corners again";
+}
+
+TEST_F(MeshIo, ReadingCanBeCancelledAndIsNotBlind) {
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.ply"));
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.obj"));
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.off"));
+  for (const char* name : {"m.ply", "m.obj", "m.off"}) {
+    int polls = 0;
+    EXPECT_THROW(io::read_mesh(path(name),
+                               [&] {
+                                 if (++polls == 4) throw Cancelled();
+                               }),
+                 Cancelled)
+        << name;
+  }
+  for (const char* name : {"s.ply", "s.obj", "s.off", "s.stl"}) {  // nothing but zeros, and more than there is memory
+    fs::resize_file(file(name, ""), std::uintmax_t(1) << 42);
+    const std::string s = [&] {
+      try {
+        io::read_mesh(path(name));
+      } catch (const UserError& e) {
+        return std::string(e.what());
+      }
+      return std::string();
+    }();
+    EXPECT_NE(s.find("; export the mesh again."), s.npos) << name << s;
+  }
+}
+
 TEST_F(MeshIo, BrokenFilesGiveOneSentence) {
   const std::string t = kTriangle, v = "0 0 0\n1 0 0\n0 1 0\n", binary = "binary_little_endian";
   const std::string three = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}), index = raw<std::int32_t>({0, 1, 2});
@@ -412,6 +572,7 @@ TEST_F(MeshIo, FilesThatCannotBeOpened) {
   if (fs::exists("/dev/full")) {
     fs::create_symlink("/dev/full", path("full.ply"));
     EXPECT_THROW(io::write_mesh(test::sphere(), path("full.ply")), UserError);
+    EXPECT_TRUE(fs::is_symlink(path("full.ply")));
   }
 }
 

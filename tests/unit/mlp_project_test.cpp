@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <climits>
 #include <filesystem>
 #include <fstream>
 
 #include "parts/base/error.h"
+#include "support/folder.h"
 
 namespace parts {
 namespace {
@@ -21,10 +23,15 @@ class MlpProjectFile : public ::testing::Test {
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    for (const char* name : {"p.mlp", "q.mlp"})
+      if (fs::exists(path(name))) test::keep_for_corpus("mlp", test::contents(path(name)));
+    fs::remove_all(folder_);
+  }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   io::MlpProject read(const std::string& text) const {
     std::ofstream(path("p.mlp"), std::ios::binary) << text;
+    test::keep_for_corpus("mlp", text);
     return io::read_mlp(path("p.mlp"));
   }
   std::string sentence(const std::string& text) const {
@@ -100,7 +107,7 @@ TEST_F(MlpProjectFile, ReadsBackWhatItWrites) {
   EXPECT_EQ(q.rasters[0].camera.translation, p.rasters[0].camera.translation);
   EXPECT_EQ(q.rasters[0].camera.focal_mm, 50);
   EXPECT_EQ(q.rasters[0].planes[1].file, p.rasters[0].planes[1].file);
-  EXPECT_FALSE(fs::exists(path("q.mlp.part")));
+  for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_FALSE(is_draft_name(entry.path().filename()));
 }
 
 TEST_F(MlpProjectFile, NamesFilesRelativeToItsFolder) {
@@ -139,6 +146,33 @@ TEST_F(MlpProjectFile, IsNotBlownUpByEntities) {
       "]><MeshLabProject><MeshGroup><MLMesh filename='a'><MLMatrix44>&a11;</MLMatrix44></MLMesh></MeshGroup>"
       "</MeshLabProject>";
   EXPECT_NE(sentence(text).find("is damaged"), std::string::npos);
+}
+
+TEST_F(MlpProjectFile, NumbersThatNoIntegerHolds) {
+  const std::string head = "<MeshLabProject><RasterGroup><MLRaster label='r'>",
+                    tail = "</MLRaster></RasterGroup></MeshLabProject>";
+  std::ofstream(path("p.mlp")) << head +
+                                      "<VCGCamera ViewportPx='1e300 -1e300' CameraType='1e99'/>"
+                                      "<Plane semantic='1e300' fileName='x'/><Plane semantic='-1e300' fileName='y'/>" +
+                                      tail;
+  const io::MlpProject p = io::read_mlp(path("p.mlp"));
+  ASSERT_EQ(p.rasters.size(), 1u);
+  EXPECT_EQ(p.rasters[0].planes[0].semantic, INT_MAX);
+  EXPECT_EQ(p.rasters[0].planes[1].semantic, INT_MIN);
+  EXPECT_EQ(p.rasters[0].camera.viewport_px, Eigen::Vector2i(INT_MAX, 0));
+}
+
+TEST_F(MlpProjectFile, DeepNestingAndStrangeNamesComeBack) {
+  std::string deep = "<MeshLabProject>";
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  EXPECT_NE(sentence(deep).find("is damaged"), std::string::npos);
+  io::MlpProject p;
+  p.meshes.push_back({"<a> & \"b\" 'c' \t K\xc3\xb6pfe", path("x & y\".ply")});
+  io::write_mlp(p, path("q.mlp"));
+  const io::MlpProject q = io::read_mlp(path("q.mlp"));
+  ASSERT_EQ(q.meshes.size(), 1u);
+  EXPECT_EQ(q.meshes[0].label, p.meshes[0].label);
+  EXPECT_EQ(q.meshes[0].file, p.meshes[0].file);
 }
 
 }  // namespace

@@ -2,14 +2,18 @@
 #include "parts/search/model_cache.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "parts/io/mesh_io.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -17,14 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string contents(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::contents;
 
 bool same(const search::ModelRaster& a, const search::ModelRaster& b) {
-  const search::ModelCache::Key key{1, 2, 3, 4, a.levels.size()};
-  return search::ModelCache::encode(a, key) == search::ModelCache::encode(b, key);
+  const search::RasterKey key{1, 2, 3, 4, a.levels.size()};
+  return search::encode_raster(a, key) == search::encode_raster(b, key);
 }
 
 class Cache : public ::testing::Test {
@@ -134,12 +135,12 @@ TEST_F(Cache, NeverTrustsADamagedFile) {
 TEST_F(Cache, ChecksWhatAForgedFileHolds) {
   fill();
   const search::ModelRaster& good = *cache_->raster(0);
-  const search::ModelCache::Key key{1, 2, 3, 4, 2};
-  ASSERT_TRUE(search::ModelCache::decode(search::ModelCache::encode(good, key), key));
+  const search::RasterKey key{1, 2, 3, 4, 2};
+  ASSERT_TRUE(search::decode_raster(search::encode_raster(good, key), key));
   const auto refused = [&](const auto& change) {
     search::ModelRaster r = good;
     change(r);
-    return !search::ModelCache::decode(search::ModelCache::encode(r, key), key);
+    return !search::decode_raster(search::encode_raster(r, key), key);
   };
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.size = 0; }));
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.origin.x() = NAN; }));
@@ -153,6 +154,27 @@ TEST_F(Cache, ChecksWhatAForgedFileHolds) {
   EXPECT_TRUE(refused([](search::ModelRaster& r) { r.levels.pop_back(); }));
 }
 
+TEST_F(Cache, ASmallFileComesBack) {
+  search::ModelRaster r;
+  r.area = 1;
+  r.samples.resize(3);
+  r.levels.resize(2);
+  for (search::RasterLevel& l : r.levels) l.dims = {1, 2, 1}, l.nearest = {0, 2};
+  const search::RasterKey key{1, 2, 3, 4, 2};
+  const std::string bytes = search::encode_raster(r, key);
+  const auto back = search::decode_raster(bytes, key);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(same(*back, r));
+  const std::string body = bytes.substr(8 + sizeof key + 16);
+  EXPECT_TRUE(search::decode_raster_body(body, 2));
+  for (std::size_t n = 0; n < body.size(); ++n) EXPECT_FALSE(search::decode_raster_body(body.substr(0, n), 2));
+  std::string many = body;  // a count of samples that would need terabytes
+  many.replace(40, 8, std::string("\xff\xfe\0\0\0\0\0\0", 8));
+  EXPECT_FALSE(search::decode_raster_body(many, 2));
+  test::keep_for_corpus("cache", bytes);
+  test::keep_for_corpus("cache", body);
+}
+
 TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
   std::ofstream(folder_ / ".model-cache") << "a file in its place";  // root may write anywhere
   EXPECT_EQ(fill(), 3);
@@ -160,6 +182,45 @@ TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("cache: ", 0) == 0; }),
             2);
   EXPECT_EQ(contents(folder_ / ".model-cache"), "a file in its place");
+}
+
+TEST_F(Cache, WhatIsNoLongerUsedGoes) {
+  fill();
+  const auto now = fs::file_time_type::clock::now();
+  fs::remove(folder_ / "m0.ply");
+  EXPECT_EQ(fill(), 0);
+  EXPECT_EQ(file_count(), 3) << "a run that makes nothing takes nothing away";
+  const fs::path cache = folder_ / ".model-cache";
+  const std::string other = "moved.ply.0123456789abcdef", mine = "notes.txt", draft = ".parts-0123456789abcdef.draft";
+  for (const std::string& name : {other, mine, draft}) {
+    std::ofstream(cache / name) << "x";
+    fs::last_write_time(cache / name, now - std::chrono::hours(24 * 40));
+  }
+  put("m3.ply", 3);
+  fs::last_write_time(file(2), now - std::chrono::hours(24 * 40));
+  EXPECT_EQ(fill(), 1);
+  EXPECT_EQ(file_count(), 4) << "m1, m2, m3 and the user's notes";
+  EXPECT_TRUE(fs::exists(cache / mine));
+  EXPECT_FALSE(fs::exists(cache / other));
+  EXPECT_FALSE(fs::exists(cache / draft));
+  for (const auto& entry : fs::directory_iterator(cache))
+    if (entry.path().filename() != mine) {
+      EXPECT_LT(now - entry.last_write_time(), std::chrono::hours(1)) << "used today";
+    }
+}
+
+TEST_F(Cache, OnlyRegularFilesAreOpened) {
+  fill();
+  fs::remove(file(0));
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.ply").c_str(), 0600), 0);
+  EXPECT_EQ(fill(), 1) << "the pipe is skipped";
+  EXPECT_EQ(std::count_if(log_.begin(), log_.end(),
+                          [](const std::string& l) { return l.rfind("skipped: pipe.ply", 0) == 0; }),
+            1);
+  const fs::path entry = file(0);
+  fs::remove(entry);
+  ASSERT_EQ(::mkfifo(entry.c_str(), 0600), 0);
+  EXPECT_EQ(fill(), 1);
 }
 
 TEST_F(Cache, CanBeTurnedOff) {

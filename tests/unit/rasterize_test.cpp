@@ -9,6 +9,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "parts/render/surface_color.h"
 #include "support/cameras.h"
 #include "support/shapes.h"
 

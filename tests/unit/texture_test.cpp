@@ -69,19 +69,37 @@ TEST_F(TextureFiles, ColoursReachBeyondTheForeground) {
   EXPECT_EQ(cv::norm(render::extend_colors(gradient, cv::Mat::zeros(4, 6, CV_8U)), gradient, cv::NORM_INF), 0);
 }
 
+std::string write(const cv::Mat& color, const cv::Mat& mask, const render::TextureTarget& target) {
+  OutputFiles files;
+  std::string name = render::add_texture(files, color, mask, target);
+  files.commit();
+  return name;
+}
+
+TEST_F(TextureFiles, TwoRunsDoNotTakeOneName) {
+  const cv::Mat all(4, 6, CV_8U, cv::Scalar(255));
+  const render::TextureTarget beside{"", at("face.tif"), {}};
+  OutputFiles one, two;
+  EXPECT_EQ(render::add_texture(one, gradient, all, beside), at("face_texture.png"));
+  EXPECT_EQ(render::add_texture(two, 255 - gradient, all, beside), at("face_texture_2.png"));
+  one.commit(), two.commit();
+  EXPECT_EQ(cv::norm(cv::imread(at("face_texture.png")), gradient, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(cv::imread(at("face_texture_2.png")), 255 - gradient, cv::NORM_INF), 0);
+}
+
 TEST_F(TextureFiles, NothingThatIsThereIsReplaced) {
   const cv::Mat all(4, 6, CV_8U, cv::Scalar(255));
   const render::TextureTarget beside{"", at("face.tif"), {}};
-  EXPECT_EQ(render::write_texture(gradient, all, beside), at("face_texture.png"));
-  EXPECT_EQ(render::write_texture(gradient, all, beside), at("face_texture.png")) << "the same picture";
-  EXPECT_EQ(render::write_texture(255 - gradient, all, beside), at("face_texture_2.png"));
+  EXPECT_EQ(write(gradient, all, beside), at("face_texture.png"));
+  EXPECT_EQ(write(gradient, all, beside), at("face_texture.png")) << "the same picture";
+  EXPECT_EQ(write(255 - gradient, all, beside), at("face_texture_2.png"));
   EXPECT_EQ(cv::norm(cv::imread(at("face_texture.png")), gradient, cv::NORM_INF), 0);
 
   const render::TextureTarget mine{at("mine.png"), at("face.tif"), {"", at("face_texture.png")}};
-  EXPECT_EQ(render::write_texture(gradient, all, mine), at("mine.png"));
-  EXPECT_EQ(render::write_texture(255 - gradient, all, mine), at("mine.png")) << "asked for by name";
+  EXPECT_EQ(write(gradient, all, mine), at("mine.png"));
+  EXPECT_EQ(write(255 - gradient, all, mine), at("mine.png")) << "asked for by name";
   const render::TextureTarget input{at("face_texture.png"), at("face.tif"), mine.inputs};
-  EXPECT_THROW(render::write_texture(255 - gradient, all, input), UserError);
+  EXPECT_THROW(write(255 - gradient, all, input), UserError);
   EXPECT_EQ(cv::norm(cv::imread(at("face_texture.png")), gradient, cv::NORM_INF), 0);
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <set>
 
-#include "parts/base/memory.h"
 #include "parts/cut/joint.h"
 #include "parts/cut/rasterize.h"
 #include "support/shapes.h"
@@ -239,8 +238,6 @@ TEST(JointVoxels, FlagsSayWhatPassesThrough) {
   EXPECT_EQ(voxels.at(-1, 0, 0), -1);
   EXPECT_EQ(voxels.at(0, grid.dims[1], 0), -1);
 }
-
-TEST(Memory, IsKnown) { EXPECT_GT(available_memory(), 1e6); }
 
 }  // namespace
 }  // namespace parts::test
