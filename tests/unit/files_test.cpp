@@ -8,8 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <memory>
 #include <set>
+#include <thread>
 
 #include "parts/base/memory.h"
 #include "support/folder.h"
@@ -175,6 +179,21 @@ TEST_F(Files, ADiskThatIsFull) {
   EXPECT_EQ(old, "whole");
   EXPECT_EQ(now.size(), 20000u);
   EXPECT_EQ(count, 1);
+}
+
+TEST_F(Files, AFolderIsLockedByOneAtATime) {
+  std::atomic<bool> released{false};
+  auto first = std::make_unique<FolderLock>(folder);
+  std::thread second([&] {
+    const FolderLock lock(folder);
+    EXPECT_TRUE(released);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  released = true;
+  first.reset();
+  second.join();
+  const FolderLock nowhere(folder / "none");  // there is nothing to lock
+  EXPECT_TRUE(names().empty());
 }
 
 TEST_F(Files, ManyFilesAtOnce) {
