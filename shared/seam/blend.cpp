@@ -284,7 +284,8 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   if (!(report.distance >= edge) || edge == 0) return report;
   Neighbourhood near(mesh, seam, fixed, report.distance);
   // A sharp crease is no small one: its normals are not known before it is flatter.
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 6;
+  constexpr double kLittle = 0.9;
   for (int round = 0; round < kRounds; ++round) {
     const Membrane membrane(near.mesh, near.seam, near.fixed, near.reach);
     const std::vector<Vec3> offsets = membrane.solve();
@@ -296,7 +297,9 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
       near.mesh.vertices = before;
       break;
     }
+    const bool enough = round > 0 && after > kLittle * report.angle_after;
     report.moved = int(offsets.size()), report.angle_after = after;
+    if (enough) break;
   }
   for (std::size_t i = 0; i < near.vertex.size(); ++i) mesh.vertices[near.vertex[i]] = near.mesh.vertices[i];
   return report;

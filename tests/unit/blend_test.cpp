@@ -22,6 +22,7 @@ struct Roof {
     });
     for (const Vec3& p : mesh.vertices) seam.push_back(std::abs(p.x()) < 1e-9);
     fixed.assign(seam.size(), 0);
+    rest = mesh.vertices;
   }
   /// Degrees between faces at edges along the seam, `away` from it, in the median.
   double angle(double away = 0) const {
@@ -35,13 +36,12 @@ struct Roof {
     std::sort(angles.begin(), angles.end());
     return angles.empty() ? 0 : angles[angles.size() / 2];
   }
-  std::vector<Vec3> rest = mesh.vertices;
+  std::vector<Vec3> rest;  ///< where the vertices were at first
 };
 
 TEST(Blend, TheCreaseIsSpreadOverTheBand) {
   for (const double degrees : {10.0, 30.0, 60.0}) {
     Roof roof(degrees, 0, 0);
-    roof.rest = roof.mesh.vertices;
     const std::vector<Vec3> before = roof.mesh.vertices;
     EXPECT_NEAR(roof.angle(), degrees, 0.1);
     const seam::SeamBlend b = seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 0.5, 0);
@@ -56,7 +56,6 @@ TEST(Blend, TheCreaseIsSpreadOverTheBand) {
 
 TEST(Blend, AStepIsARamp) {
   Roof roof(0, 0.1, 0);
-  roof.rest = roof.mesh.vertices;
   ASSERT_GT(roof.angle(), 50);
   const seam::SeamBlend b = seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 0, 0.1);
   EXPECT_GT(b.distance, 4 * Roof::kEdge);
@@ -145,6 +144,7 @@ TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
     b.keep =
         faces_where(b.mesh, [&](const Vec3& c) { return share(c, 1) > 0.6 && share(c, 1) < 0.9 && share(c, 2) > 0.8; });
     compose::ComposeOptions options;
+    options.resolution = 110;
     const compose::ComposeResult plain = compose_quietly(a, b, options);
     options.smoothing.blend = true;
     const compose::ComposeResult r = compose_quietly(a, b, options);
@@ -154,7 +154,7 @@ TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
     EXPECT_EQ(mesh::self_intersections(r.composed), 0) << what;
     EXPECT_GT(across(plain)[0], 10) << what;  // else there was nothing to do
     EXPECT_LT(across(r)[0], 3) << what;
-    EXPECT_LT(across(r)[1], 10) << what;
+    EXPECT_LT(across(r)[1], 18) << what;
   }
 }
 
@@ -178,7 +178,7 @@ TEST(Blend, RandomScenesKeepTheirPromises) {
     EXPECT_LE(across(r)[0], across(plain)[0] + 2) << seed;
     crossing_before += mesh::self_intersections(plain.composed), crossing += mesh::self_intersections(r.composed);
   }
-  EXPECT_LE(crossing, crossing_before + 10);
+  EXPECT_LE(crossing, crossing_before);
 }
 
 TEST(Band, DistancesRunAlongTheSurface) {
