@@ -40,6 +40,10 @@ void add_cut(std::vector<Parameter>& list) {
                         "Refined: a smooth border, kept away from places where only one model is (best for most). "
                         "Thesis: the published weights as printed, borders along the sides of voxels. Mesh: a cut on "
                         "the faces themselves, not available yet."));
+  list.push_back(length("BlendDistance", options.smoothing.blend_distance, "Blending distance",
+                        "Both surfaces give way up to this distance from the seam, so that they meet without a step or "
+                        "a crease; their details stay. 0 chooses from how they meet (with the cut Thesis: not at all). "
+                        "Less than an edge leaves the seam as it is."));
 }
 
 }  // namespace

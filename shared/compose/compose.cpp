@@ -83,6 +83,7 @@ std::unique_ptr<Attempt> attempt(cut::Model& a, cut::Model& b, const Box& volume
   t->flaws = seam::stitch_parts(t->joined, (3 + 2 * t->decision.reach) * voxel, t->report);
   progress.at(0.6);
   t->flaws += voxel * double(seam::finish_seam(t->joined, voxel, options.cut, options.smoothing, options.threads));
+  t->report.blend = t->joined.blend;
   return t;
 }
 
@@ -130,6 +131,8 @@ void check(const ComposeOptions& o) {
     throw UserError("SmoothWeight must lie between 0 (vertices stay) and 1 (vertices go to their neighbours' mean).");
   if (!(o.smoothing.distance >= 0) || !std::isfinite(o.smoothing.distance))
     throw UserError("SmoothDistance must be a length of 0 or more; 0 means two voxels.");
+  if (!(o.smoothing.blend_distance >= 0) || !std::isfinite(o.smoothing.blend_distance))
+    throw UserError("BlendDistance must be a length of 0 or more; 0 chooses one.");
 }
 
 void log_notes(const cut::Model& m, const char* suffix, Progress& progress) {
