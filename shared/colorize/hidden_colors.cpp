@@ -67,7 +67,14 @@ void continue_harmonically(const Mesh& mesh, const std::vector<char>& known, std
   Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
   solver.setTolerance(1e-4);
   solver.compute(laplacian);
-  const Eigen::MatrixX3d solution = solver.solve(right);
+  Eigen::MatrixX3d solution(rows, 3);
+  for (int channel = 0; channel < 3; ++channel) {
+    solution.col(channel) = solver.solve(right.col(channel));
+    // Short of the tolerance a colour is off by less than can be seen; far off
+    // the model's own colours are better.
+    constexpr double kUsable = 0.01;
+    if (solver.info() != Eigen::Success && !(solver.error() < kUsable)) return;
+  }
   for (std::size_t v = 0; v < value.size(); ++v)
     if (!known[v] && row[place[v]] >= 0) value[v] = solution.row(row[place[v]]).transpose().cast<float>();
 }
