@@ -104,6 +104,22 @@ TEST(Blend, WhatIsSmoothStaysAndWhatIsFixedToo) {
   EXPECT_LT(roof.angle(), 12);  // one side alone takes it
 }
 
+TEST(Blend, AsFarAsTheModelsGo) {
+  const auto [a, b] = two_spheres(4);
+  compose::ComposeOptions options;
+  options.smoothing.blend = true, options.smoothing.blend_distance = 1e9;
+  const compose::ComposeResult r = compose_quietly(a, b, options);
+  expect_closed_manifold(r.composed, "two spheres");
+  EXPECT_EQ(missing_faces(r, a, b), 0);
+  const Box whole = a.mesh.bounds().merged(b.mesh.bounds());
+  const Vec3 room = Vec3::Constant(0.5);
+  for (const Vec3& p : r.composed.vertices) EXPECT_TRUE(Box(whole.min() - room, whole.max() + room).contains(p));
+  // All of a surface that nothing holds.
+  Roof roof(30, 0, 0);
+  seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 1e9, 0);
+  for (std::size_t v = 0; v < roof.rest.size(); ++v) EXPECT_LT((roof.mesh.vertices[v] - roof.rest[v]).norm(), 1);
+}
+
 TEST(Blend, NothingToBlend) {
   Mesh none;
   EXPECT_EQ(seam::blend_seam(none, {}, {}, 0, 0).moved, 0);
@@ -136,15 +152,14 @@ std::array<double, 2> across(const compose::ComposeResult& r) {
 }
 
 TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
-  for (const unsigned seed : {1u, 3u, 6u}) {
-    cut::Part a{bust(seed), {}}, b{bust(seed + 9), {}};
+  for (const unsigned seed : {4u, 6u}) {
+    cut::Part a{bust(seed), {}}, b{bust(seed + 8), {}};
     const Box box = a.mesh.bounds();
     const auto share = [&](const Vec3& p, int axis) { return (p[axis] - box.min()[axis]) / box.sizes()[axis]; };
     a.keep = faces_where(a.mesh, [&](const Vec3& c) { return share(c, 1) < 0.2 || share(c, 2) < 0.3; });
     b.keep =
         faces_where(b.mesh, [&](const Vec3& c) { return share(c, 1) > 0.6 && share(c, 1) < 0.9 && share(c, 2) > 0.8; });
     compose::ComposeOptions options;
-    options.resolution = 110;
     const compose::ComposeResult plain = compose_quietly(a, b, options);
     options.smoothing.blend = true;
     const compose::ComposeResult r = compose_quietly(a, b, options);
@@ -154,7 +169,7 @@ TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
     EXPECT_EQ(mesh::self_intersections(r.composed), 0) << what;
     EXPECT_GT(across(plain)[0], 10) << what;  // else there was nothing to do
     EXPECT_LT(across(r)[0], 3) << what;
-    EXPECT_LT(across(r)[1], 18) << what;
+    EXPECT_LT(across(r)[1], 10) << what;
   }
 }
 
