@@ -48,6 +48,9 @@ compose::ComposeOptions cut_options(const Inputs& inputs) {
   options.resolution = inputs.integer("Resolution");
   options.cut = cut_of(inputs);
   options.smoothing = smoothing_of(inputs);
+  options.smoothing.blend_distance = inputs.length("BlendDistance");
+  // The published cut is smoothed as published, unless it is asked for more.
+  options.smoothing.blend = options.cut != cut::Cut::Thesis || options.smoothing.blend_distance > 0;
   return options;
 }
 
@@ -84,6 +87,10 @@ void log_report(const compose::ComposeReport& r, const Mesh& composed, cut::Cut 
   log_value(progress, "pieces_joined", r.pieces_joined);
   log_value(progress, "loops_capped", r.loops_capped);
   log_value(progress, "loops_open", r.loops_open);
+  log_value(progress, "pieces_dropped", r.pieces_dropped);
+  log_value(progress, "blend_distance", r.blend.distance);
+  log_value(progress, "seam_angle_before", r.blend.angle_before);
+  log_value(progress, "seam_angle_after", r.blend.angle_after);
   log_value(progress, "reversed_b", r.reversed_b);
   log_value(progress, "faces", composed.face_count());
   log_value(progress, "seconds", r.seconds);

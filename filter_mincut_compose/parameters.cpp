@@ -52,6 +52,10 @@ void add_cut(std::vector<Parameter>& list) {
   list.push_back(cut_choice(
       "Mesh: the minimal cut on a graph of the models' own faces, smooth borders (best for most). Thesis: the "
       "published weights as printed, through voxels, borders along their sides."));
+  list.push_back(length("BlendDistance", options.smoothing.blend_distance, "Blending distance",
+                        "Both surfaces give way up to this distance from the seam, so that they meet without a step or "
+                        "a crease; their details stay. 0 chooses from how they meet (with the cut Thesis: not at all). "
+                        "Less than an edge leaves the seam as it is."));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ void assemble(const cut::Model& a, seam::Clipped clipped_a, const cut::Model& b,
     progress.at(0.6);
     t.flaws +=
         measure.edge * double(seam::finish_seam(joined, measure.edge, options.cut, options.smoothing, options.threads));
+    report.blend = joined.blend;
   }
   t.result.composed = std::move(joined.mesh);
   t.result.face_from_b = std::move(joined.tag);

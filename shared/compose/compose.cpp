@@ -150,6 +150,8 @@ void check(const ComposeOptions& o) {
     throw UserError("SmoothWeight must lie between 0 (vertices stay) and 1 (vertices go to their neighbours' mean).");
   if (!(o.smoothing.distance >= 0) || !std::isfinite(o.smoothing.distance))
     throw UserError("SmoothDistance must be a length of 0 or more; 0 means two voxels.");
+  if (!(o.smoothing.blend_distance >= 0) || !std::isfinite(o.smoothing.blend_distance))
+    throw UserError("BlendDistance must be a length of 0 or more; 0 chooses one.");
 }
 
 void log_notes(const cut::Model& m, const char* suffix, Progress& progress) {

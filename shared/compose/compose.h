@@ -7,6 +7,7 @@
 #include "parts/cut/cut.h"
 #include "parts/cut/volume.h"
 #include "parts/mesh/mesh.h"
+#include "parts/seam/blend.h"
 #include "parts/seam/seam.h"
 
 namespace parts::compose {
@@ -23,6 +24,7 @@ struct ComposeOptions {
 
 /// What a composition measured.
 struct ComposeReport : cut::CutReport, seam::SeamReport {
+  seam::SeamBlend blend;
   double seconds = 0;
 };
 

@@ -34,6 +34,10 @@ class EarCutter {
   int take(std::priority_queue<Ear>& from);
   int best_of_four() const;
   void clip(int k);
+  /// A triangle, from its first corner in the polygon on.
+  void add(int a, int b, int c) {
+    triangles_.push_back(a < b && a < c ? Triangle{a, b, c} : b < c ? Triangle{b, c, a} : Triangle{c, a, b});
+  }
 
   const std::vector<Vec3>& p_;
   const MayJoin& may_join_;
@@ -125,7 +129,7 @@ int EarCutter::best_of_four() const {
 
 void EarCutter::clip(int k) {
   const int a = prev_[k], c = next_[k];
-  triangles_.push_back({a, k, c});
+  add(a, k, c);
   next_[a] = c, prev_[c] = a, prev_[k] = -1, first_ = a;
   --left_;
 }
@@ -145,7 +149,7 @@ std::vector<Triangle> EarCutter::cut() {
     clip(k);
     offer(a), offer(c);
   }
-  if (left_ == 3) triangles_.push_back({prev_[first_], first_, next_[first_]});
+  if (left_ == 3) add(prev_[first_], first_, next_[first_]);
   return std::move(triangles_);
 }
 

@@ -18,7 +18,7 @@ using MayJoin = std::function<bool(int, int)>;
 /// @param corners   in order, the first not repeated
 /// @param may_join  optional; chords for which it is false are not made
 /// @return triangles of positions in `corners`, that run as the polygon does:
-///         two fewer than corners, or none if `may_join` leaves no way
+///         each from its first corner on; two fewer than corners, or none if `may_join` leaves no way
 std::vector<Triangle> cut_ears(const std::vector<Vec3>& corners, const MayJoin& may_join = {});
 
 }  // namespace parts::mesh

@@ -200,7 +200,10 @@ std::vector<Vec3> Membrane::solve() const {
   const Eigen::MatrixX3d missing = missing_bend(l.matrix * x, area);
 
   const Eigen::SparseMatrix<double> columns = l.matrix.leftCols(m);
-  const Eigen::SparseMatrix<double> system = columns.transpose() * weight.asDiagonal() * columns;
+  Eigen::SparseMatrix<double> system = columns.transpose() * weight.asDiagonal() * columns;
+  // Where nothing holds a whole model, this does.
+  constexpr double kHold = 1e-9;
+  for (int i = 0; i < m; ++i) system.coeffRef(i, i) *= 1 + kHold;
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(system);
   if (cholesky.info() != Eigen::Success) return {};
   const Eigen::MatrixX3d offset = cholesky.solve(columns.transpose() * (weight.asDiagonal() * missing));
@@ -282,9 +285,13 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   const double edge = mean_edge_beside(mesh, seam);
   report.distance = distance > 0 ? distance : natural_distance(mesh, angles, edge, gap);
   if (!(report.distance >= edge) || edge == 0) return report;
+  constexpr std::size_t kMost = 100000;  // vertices; bounds time and memory
+  if (const Band band = band_around(mesh, seam, report.distance); band.vertices.size() > kMost)
+    report.distance = band.away[band.vertices[kMost]];
   Neighbourhood near(mesh, seam, fixed, report.distance);
   // A sharp crease is no small one: its normals are not known before it is flatter.
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 6;
+  constexpr double kLittle = 0.9;
   for (int round = 0; round < kRounds; ++round) {
     const Membrane membrane(near.mesh, near.seam, near.fixed, near.reach);
     const std::vector<Vec3> offsets = membrane.solve();
@@ -296,7 +303,9 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
       near.mesh.vertices = before;
       break;
     }
+    const bool enough = round > 0 && after > kLittle * report.angle_after;
     report.moved = int(offsets.size()), report.angle_after = after;
+    if (enough) break;
   }
   for (std::size_t i = 0; i < near.vertex.size(); ++i) mesh.vertices[near.vertex[i]] = near.mesh.vertices[i];
   return report;

@@ -41,7 +41,7 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
 double stitch_parts(Joined& joined, double max_gap, SeamReport& report);
 
 /// Removes the seam's slivers, evens it (Mesh), lets the surfaces give way at
-/// it (if asked to), smooths it, parts faces that cross, and mends the normals
+/// it (if asked to, and as far as no faces cross by it), smooths it, parts faces that cross, and mends the normals
 /// around it.
 /// @return pairs of faces at the seam that still cross
 long finish_seam(Joined& joined, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads);

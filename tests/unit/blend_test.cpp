@@ -22,6 +22,7 @@ struct Roof {
     });
     for (const Vec3& p : mesh.vertices) seam.push_back(std::abs(p.x()) < 1e-9);
     fixed.assign(seam.size(), 0);
+    rest = mesh.vertices;
   }
   /// Degrees between faces at edges along the seam, `away` from it, in the median.
   double angle(double away = 0) const {
@@ -35,13 +36,12 @@ struct Roof {
     std::sort(angles.begin(), angles.end());
     return angles.empty() ? 0 : angles[angles.size() / 2];
   }
-  std::vector<Vec3> rest = mesh.vertices;
+  std::vector<Vec3> rest;  ///< where the vertices were at first
 };
 
 TEST(Blend, TheCreaseIsSpreadOverTheBand) {
   for (const double degrees : {10.0, 30.0, 60.0}) {
     Roof roof(degrees, 0, 0);
-    roof.rest = roof.mesh.vertices;
     const std::vector<Vec3> before = roof.mesh.vertices;
     EXPECT_NEAR(roof.angle(), degrees, 0.1);
     const seam::SeamBlend b = seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 0.5, 0);
@@ -56,7 +56,6 @@ TEST(Blend, TheCreaseIsSpreadOverTheBand) {
 
 TEST(Blend, AStepIsARamp) {
   Roof roof(0, 0.1, 0);
-  roof.rest = roof.mesh.vertices;
   ASSERT_GT(roof.angle(), 50);
   const seam::SeamBlend b = seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 0, 0.1);
   EXPECT_GT(b.distance, 4 * Roof::kEdge);
@@ -105,6 +104,22 @@ TEST(Blend, WhatIsSmoothStaysAndWhatIsFixedToo) {
   EXPECT_LT(roof.angle(), 12);  // one side alone takes it
 }
 
+TEST(Blend, AsFarAsTheModelsGo) {
+  const auto [a, b] = two_spheres(4);
+  compose::ComposeOptions options;
+  options.smoothing.blend = true, options.smoothing.blend_distance = 1e9;
+  const compose::ComposeResult r = compose_quietly(a, b, options);
+  expect_closed_manifold(r.composed, "two spheres");
+  EXPECT_EQ(missing_faces(r, a, b), 0);
+  const Box whole = a.mesh.bounds().merged(b.mesh.bounds());
+  const Vec3 room = Vec3::Constant(0.5);
+  for (const Vec3& p : r.composed.vertices) EXPECT_TRUE(Box(whole.min() - room, whole.max() + room).contains(p));
+  // All of a surface that nothing holds.
+  Roof roof(30, 0, 0);
+  seam::blend_seam(roof.mesh, roof.seam, roof.fixed, 1e9, 0);
+  for (std::size_t v = 0; v < roof.rest.size(); ++v) EXPECT_LT((roof.mesh.vertices[v] - roof.rest[v]).norm(), 1);
+}
+
 TEST(Blend, NothingToBlend) {
   Mesh none;
   EXPECT_EQ(seam::blend_seam(none, {}, {}, 0, 0).moved, 0);
@@ -137,8 +152,8 @@ std::array<double, 2> across(const compose::ComposeResult& r) {
 }
 
 TEST(Blend, FacesOfOneHeadOnAnotherShowNoSeam) {
-  for (const unsigned seed : {1u, 3u, 6u}) {
-    cut::Part a{bust(seed), {}}, b{bust(seed + 9), {}};
+  for (const unsigned seed : {4u, 6u}) {
+    cut::Part a{bust(seed), {}}, b{bust(seed + 8), {}};
     const Box box = a.mesh.bounds();
     const auto share = [&](const Vec3& p, int axis) { return (p[axis] - box.min()[axis]) / box.sizes()[axis]; };
     a.keep = faces_where(a.mesh, [&](const Vec3& c) { return share(c, 1) < 0.2 || share(c, 2) < 0.3; });
@@ -178,16 +193,16 @@ TEST(Blend, RandomScenesKeepTheirPromises) {
     EXPECT_LE(across(r)[0], across(plain)[0] + 2) << seed;
     crossing_before += mesh::self_intersections(plain.composed), crossing += mesh::self_intersections(r.composed);
   }
-  EXPECT_LE(crossing, crossing_before + 10);
+  EXPECT_LE(crossing, crossing_before);
 }
 
 TEST(Band, DistancesRunAlongTheSurface) {
   const Roof roof(0, 0, 0);
-  const seam::Band band = seam::band_around(roof.mesh, roof.seam, 0.3);
+  const seam::Band band = seam::band_around(roof.mesh, roof.seam, 0.32);
   ASSERT_FALSE(band.vertices.empty());
   for (int v = 0; v < roof.mesh.vertex_count(); ++v) {
     const double x = std::abs(roof.mesh.vertices[v].x());
-    EXPECT_NEAR(std::min(band.away[v], 1.0), x < 0.299 ? x : 1.0, 1e-6);
+    EXPECT_NEAR(std::min(band.away[v], 1.0), x < 0.31 ? x : 1.0, 1e-6);
   }
   for (std::size_t i = 1; i < band.vertices.size(); ++i)
     EXPECT_LE(band.away[band.vertices[i - 1]], band.away[band.vertices[i]]);

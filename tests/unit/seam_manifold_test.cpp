@@ -62,12 +62,12 @@ TEST(SeamManifold, NoEdgeAndNoVertexThatTheInputsDidNotHave) {
 }
 
 TEST(SeamManifold, ACapMakesNoEdgeThatIsThere) {
-  // A strip of five quads whose one side is the contour: neighbours but one share an edge across it.
+  // A triangle with an ear on each side: every other corner of the contour shares an edge already.
   Mesh mesh;
   const int n = 6;
   for (int i = 0; i < n; ++i) mesh.vertices.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
-  for (int i = 0; i < n; i += 2) mesh.faces.push_back({i, (i + 1) % n, (i + 2) % n});  // three ears outside ...
-  mesh.faces.push_back({0, 2, 4});                                                     // ... and the middle
+  for (int i = 0; i < n; i += 2) mesh.faces.push_back({i, (i + 1) % n, (i + 2) % n});
+  mesh.faces.push_back({0, 2, 4});
   const std::vector<mesh::Loop> border = mesh::trace_loops(mesh::boundary_half_edges(mesh));
   ASSERT_EQ(border.size(), 1u);
   ASSERT_EQ(border[0].size(), n);
