@@ -9,6 +9,7 @@
 #include "parts/mend/patch_color.h"
 #include "parts/mend/thesis_cut.h"
 #include "parts/mesh/attributes.h"
+#include "parts/spatial/closest_face.h"
 
 namespace parts::mend {
 namespace {
@@ -19,6 +20,26 @@ struct Opened {
   std::vector<int> source;  ///< per face: its number in the scan
   std::vector<mesh::Loop> rims;
 };
+
+/// Whole pieces of a scan that were selected with the flaw around them, but
+/// have their like in the model (an eyeball behind its lids), stay.
+/// @param near      how far from the model, on average, world units
+/// @param replaced  per face
+void keep_what_agrees(const Scan& scan, const Mesh& model, double near, std::vector<char>& replaced) {
+  const Mesh& mesh = scan.mesh();
+  std::vector<int> count(mesh.vertices.size(), 0);  // per component: faces to be replaced
+  std::vector<double> away(mesh.vertices.size(), 0);
+  const auto component = [&](int f) { return scan.component()[mesh.faces[f][0]]; };
+  const auto whole = [&](int f) { return count[component(f)] == scan.component_faces()[mesh.faces[f][0]]; };
+  for (int f = 0; f < mesh.face_count(); ++f) count[component(f)] += replaced[f];
+  const spatial::ClosestFace on_model(model);
+  if (on_model.empty()) return;
+  int hint = 0;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f] && whole(f)) away[component(f)] += on_model(mesh.center(f), hint).distance;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f] && whole(f) && away[component(f)] <= near * count[component(f)]) replaced[f] = 0;
+}
 
 class Mender {
  public:
@@ -62,7 +83,8 @@ Opened Mender::opened(const Fit& fit, const FlawConstraints& constraints) const 
     for (int f = 0; f < scan.face_count(); ++f) o.source.push_back(f);
     return o;
   }
-  const std::vector<char> replaced = cut_out_flaw(scan, region_, constraints, fit.mesh);
+  std::vector<char> replaced = cut_out_flaw(scan, region_, constraints, fit.mesh);
+  keep_what_agrees(scan_, fit.mesh, 0.03 * region_.size(), replaced);
   std::vector<char> stays(replaced.size());
   for (std::size_t f = 0; f < stays.size(); ++f) stays[f] = !replaced[f];
   std::vector<int> old_vertex;
@@ -84,6 +106,7 @@ PasteOptions Mender::paste_options() const {
   PasteOptions o;
   o.size = region_.size();
   o.tolerance = (options_.fitting.fit_to_rim ? 0.1 : 0.3) * region_.size();
+  o.replace_islands = fills() || flaw_.empty();  // what is not selected is not the user's flaw
   o.smoothing = options_.smoothing;
   o.threads = options_.fitting.threads;
   return o;
