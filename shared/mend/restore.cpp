@@ -9,6 +9,7 @@
 #include "parts/mend/patch_color.h"
 #include "parts/mend/thesis_cut.h"
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/self_intersections.h"
 #include "parts/spatial/closest_face.h"
 
 namespace parts::mend {
@@ -19,7 +20,32 @@ struct Opened {
   Mesh mesh;
   std::vector<int> source;  ///< per face: its number in the scan
   std::vector<mesh::Loop> rims;
+  std::vector<char> crossed;  ///< per face: of a piece that what was cut out has crossed; empty: none
 };
+
+/// Per face of a scan: of another piece that the faces to be replaced cross, as lids do an eyeball.
+std::vector<char> pieces_crossed(const Scan& scan, const std::vector<char>& replaced, int threads) {
+  const Mesh& mesh = scan.mesh();
+  Box box;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f]) box.extend(mesh.face_box(f));
+  std::vector<char> around(mesh.faces.size()), piece(mesh.vertices.size(), 0), flags;
+  for (int f = 0; f < mesh.face_count(); ++f) around[f] = box.intersects(mesh.face_box(f));
+  std::vector<int> old_face;
+  const Mesh there = mesh::take_faces(mesh, around, nullptr, &old_face);
+  const auto component = [&](int f) { return scan.component()[mesh.faces[f][0]]; };
+  for (const auto& [a, b] : mesh::intersecting_faces(there, 0, threads)) {
+    const int f = old_face[a], g = old_face[b];
+    if (component(f) == component(g)) continue;
+    if (replaced[f]) piece[component(g)] = 1;
+    if (replaced[g]) piece[component(f)] = 1;
+  }
+  // Not the piece that is mended.
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f]) piece[component(f)] = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) flags.push_back(piece[component(f)]);
+  return flags;
+}
 
 /// Whole pieces of a scan that were selected with the flaw around them, but
 /// have their like in the model (an eyeball behind its lids), stay.
@@ -93,6 +119,8 @@ Opened Mender::opened(const Fit& fit, const FlawConstraints& constraints) const 
   for (int f = 0; f < scan.face_count(); ++f)
     if (replaced[f])
       for (int v : scan.faces[f]) beside[v] = 1;
+  const std::vector<char> crossed = pieces_crossed(scan_, replaced, options_.fitting.threads);
+  for (int f : o.source) o.crossed.push_back(crossed[f]);
   for (mesh::Loop& rim : find_rims(o.mesh))
     if (std::any_of(rim.begin(), rim.end(), [&](int v) { return beside[old_vertex[v]] != 0; }))
       o.rims.push_back(std::move(rim));
@@ -137,7 +165,7 @@ Objection Mender::attempt(const Opened& opened, const Fit& fit, Restored& out) c
   // What is joined to the rim may lie off the model by what the two differ there.
   const double edge = mesh::loop_length(opened.mesh, opened.rims[0]) / opened.rims[0].size();
   const double near = 0.03 * region_.size() + 4 * fit.fitted.rms_after + 0.25 * edge;
-  return objection_to({opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, near, options.threads});
+  return objection_to({opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, near, options.threads, opened.crossed});
 }
 
 void Mender::give_up(Objection why) const {
