@@ -70,8 +70,11 @@ bool clear_of_scan(const Trial& t) {
   for (int f = 0; f < t.after.face_count(); ++f) around[f] = patch.intersects(t.after.face_box(f));
   std::vector<int> old_face;
   const Mesh there = mesh::take_faces(t.after, around, nullptr, &old_face);
-  for (const auto& [f, g] : mesh::intersecting_faces(there, 0, t.threads))
-    if ((t.source[old_face[f]] < 0) != (t.source[old_face[g]] < 0)) return false;
+  const auto tolerated = [&](int source) { return !t.crossed.empty() && t.crossed[source]; };
+  for (const auto& [f, g] : mesh::intersecting_faces(there, 0, t.threads)) {
+    const int a = t.source[old_face[f]], b = t.source[old_face[g]];
+    if ((a < 0) != (b < 0) && !tolerated(std::max(a, b))) return false;
+  }
   return true;
 }
 

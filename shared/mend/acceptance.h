@@ -30,6 +30,7 @@ struct Trial {
   const Mesh& model;               ///< as it was fitted
   double near = 0;                 ///< how far from the model new faces may lie, world units
   int threads = 0;
+  std::vector<char> crossed = {};  ///< per face of `before`, 1 = of a piece that was crossed already; empty: none is
 };
 
 /// Judges what a file would hold, vertices at the same place made one: closed

@@ -9,6 +9,7 @@ namespace parts::mend {
 struct PasteOptions {
   double size = 0;       ///< of the region, world units
   double tolerance = 0;  ///< how far a model's surface may lie from the scan's and still be the same, world units
+  bool replace_islands = true;  ///< loose pieces that the patch runs along give way to it
   seam::SeamSmoothing smoothing;
   int threads = 0;
 };

@@ -151,6 +151,34 @@ DisjointSets neighbours(std::vector<Box> bare, double margin, Progress& progress
   return sets;
 }
 
+/// Per group of flecks, the one whose far side it is; -1: it is a flaw of its own.
+std::vector<int> far_sides(const Sheets& sheets, const std::vector<std::vector<int>>& groups) {
+  constexpr std::size_t kMostGroups = 32;  // more are no selection drawn once
+  std::vector<int> of(groups.size(), -1);
+  if (groups.size() > kMostGroups) return of;
+  for (std::size_t far = 0; far < groups.size(); ++far)
+    for (std::size_t near = 0; near < groups.size() && of[far] < 0; ++near)
+      if (near != far && of[near] < 0 && sheets.is_far_side(sheets.flaw_of(groups[far]), sheets.flaw_of(groups[near])))
+        of[far] = int(near);
+  return of;
+}
+
+/// The region around flecks that are mended together.
+Region around_group(const Flecks& flecks, const std::vector<int>& group, const std::vector<char>& left_out,
+                    double margin) {
+  Region region;
+  Box bare;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const std::vector<int>& faces = flecks.faces[group[k]];
+    std::vector<int>& to = left_out[k] ? region.not_meant : region.flaw;
+    to.insert(to.end(), faces.begin(), faces.end());
+    if (!left_out[k]) bare.extend(flecks.box[group[k]]);
+  }
+  std::sort(region.flaw.begin(), region.flaw.end()), std::sort(region.not_meant.begin(), region.not_meant.end());
+  region.box = with_margin(bare, margin);
+  return region;
+}
+
 /// The regions around flecks; those whose surroundings overlap are mended together.
 std::vector<Region> united(const Scan& scan, const Flecks& flecks, double margin, Progress& progress) {
   DisjointSets sets = neighbours(flecks.box, margin, progress);
@@ -162,21 +190,20 @@ std::vector<Region> united(const Scan& scan, const Flecks& flecks, double margin
     groups[n].push_back(i);
   }
   const Sheets sheets(scan, flecks.faces);
+  const std::vector<int> far_side_of = far_sides(sheets, groups);
   std::vector<Region> regions;
-  for (const std::vector<int>& group : groups) {
-    const std::vector<char> left_out = sheets.not_meant(group);
-    Region region;
-    Box bare;
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      const std::vector<int>& faces = flecks.faces[group[k]];
-      std::vector<int>& to = left_out[k] ? region.not_meant : region.flaw;
-      to.insert(to.end(), faces.begin(), faces.end());
-      if (!left_out[k]) bare.extend(flecks.box[group[k]]);
-    }
-    std::sort(region.flaw.begin(), region.flaw.end()), std::sort(region.not_meant.begin(), region.not_meant.end());
-    region.box = with_margin(bare, margin);
-    regions.push_back(std::move(region));
+  std::vector<int> region_of(groups.size(), -1);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (far_side_of[g] >= 0) continue;
+    region_of[g] = int(regions.size());
+    regions.push_back(around_group(flecks, groups[g], sheets.not_meant(groups[g]), margin));
   }
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (far_side_of[g] >= 0 && region_of[far_side_of[g]] >= 0)
+      for (int s : groups[g]) {
+        std::vector<int>& to = regions[region_of[far_side_of[g]]].not_meant;
+        to.insert(to.end(), flecks.faces[s].begin(), flecks.faces[s].end());
+      }
   return regions;
 }
 

@@ -31,7 +31,7 @@ struct Region {
   Box box;                       ///< flaw or hole and the margin around it
   std::vector<int> flaw;         ///< damaged faces, ascending, of the first scan; empty where only the box is known
   std::vector<mesh::Loop> rims;  ///< of the holes in it; empty for a flaw
-  std::vector<int> not_meant;    ///< selected faces behind the flaw, which stay as they are
+  std::vector<int> not_meant;    ///< selected faces behind the flaw, which stay
   double size() const { return box.diagonal().norm() / 2; }
 };
 

@@ -9,6 +9,8 @@
 #include "parts/mend/patch_color.h"
 #include "parts/mend/thesis_cut.h"
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/self_intersections.h"
+#include "parts/spatial/closest_face.h"
 
 namespace parts::mend {
 namespace {
@@ -18,7 +20,52 @@ struct Opened {
   Mesh mesh;
   std::vector<int> source;  ///< per face: its number in the scan
   std::vector<mesh::Loop> rims;
+  std::vector<char> crossed;  ///< per face: of a piece that what was cut out has crossed; empty: none
 };
+
+/// Per face of a scan: of another piece that the faces to be replaced cross, as lids do an eyeball.
+std::vector<char> pieces_crossed(const Scan& scan, const std::vector<char>& replaced, int threads) {
+  const Mesh& mesh = scan.mesh();
+  Box box;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f]) box.extend(mesh.face_box(f));
+  std::vector<char> around(mesh.faces.size()), piece(mesh.vertices.size(), 0), flags;
+  for (int f = 0; f < mesh.face_count(); ++f) around[f] = box.intersects(mesh.face_box(f));
+  std::vector<int> old_face;
+  const Mesh there = mesh::take_faces(mesh, around, nullptr, &old_face);
+  const auto component = [&](int f) { return scan.component()[mesh.faces[f][0]]; };
+  for (const auto& [a, b] : mesh::intersecting_faces(there, 0, threads)) {
+    const int f = old_face[a], g = old_face[b];
+    if (component(f) == component(g)) continue;
+    if (replaced[f]) piece[component(g)] = 1;
+    if (replaced[g]) piece[component(f)] = 1;
+  }
+  // Not the piece that is mended.
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f]) piece[component(f)] = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) flags.push_back(piece[component(f)]);
+  return flags;
+}
+
+/// Whole pieces of a scan that were selected with the flaw around them, but
+/// have their like in the model (an eyeball behind its lids), stay.
+/// @param near      how far from the model, on average, world units
+/// @param replaced  per face
+void keep_what_agrees(const Scan& scan, const Mesh& model, double near, std::vector<char>& replaced) {
+  const Mesh& mesh = scan.mesh();
+  std::vector<int> count(mesh.vertices.size(), 0);  // per component: faces to be replaced
+  std::vector<double> away(mesh.vertices.size(), 0);
+  const auto component = [&](int f) { return scan.component()[mesh.faces[f][0]]; };
+  const auto whole = [&](int f) { return count[component(f)] == scan.component_faces()[mesh.faces[f][0]]; };
+  for (int f = 0; f < mesh.face_count(); ++f) count[component(f)] += replaced[f];
+  const spatial::ClosestFace on_model(model);
+  if (on_model.empty()) return;
+  int hint = 0;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f] && whole(f)) away[component(f)] += on_model(mesh.center(f), hint).distance;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (replaced[f] && whole(f) && away[component(f)] <= near * count[component(f)]) replaced[f] = 0;
+}
 
 class Mender {
  public:
@@ -62,7 +109,8 @@ Opened Mender::opened(const Fit& fit, const FlawConstraints& constraints) const 
     for (int f = 0; f < scan.face_count(); ++f) o.source.push_back(f);
     return o;
   }
-  const std::vector<char> replaced = cut_out_flaw(scan, region_, constraints, fit.mesh);
+  std::vector<char> replaced = cut_out_flaw(scan, region_, constraints, fit.mesh);
+  keep_what_agrees(scan_, fit.mesh, 0.03 * region_.size(), replaced);
   std::vector<char> stays(replaced.size());
   for (std::size_t f = 0; f < stays.size(); ++f) stays[f] = !replaced[f];
   std::vector<int> old_vertex;
@@ -71,6 +119,8 @@ Opened Mender::opened(const Fit& fit, const FlawConstraints& constraints) const 
   for (int f = 0; f < scan.face_count(); ++f)
     if (replaced[f])
       for (int v : scan.faces[f]) beside[v] = 1;
+  const std::vector<char> crossed = pieces_crossed(scan_, replaced, options_.fitting.threads);
+  for (int f : o.source) o.crossed.push_back(crossed[f]);
   for (mesh::Loop& rim : find_rims(o.mesh))
     if (std::any_of(rim.begin(), rim.end(), [&](int v) { return beside[old_vertex[v]] != 0; }))
       o.rims.push_back(std::move(rim));
@@ -84,6 +134,7 @@ PasteOptions Mender::paste_options() const {
   PasteOptions o;
   o.size = region_.size();
   o.tolerance = (options_.fitting.fit_to_rim ? 0.1 : 0.3) * region_.size();
+  o.replace_islands = fills() || flaw_.empty();  // what is not selected is not the user's flaw
   o.smoothing = options_.smoothing;
   o.threads = options_.fitting.threads;
   return o;
@@ -114,7 +165,7 @@ Objection Mender::attempt(const Opened& opened, const Fit& fit, Restored& out) c
   // What is joined to the rim may lie off the model by what the two differ there.
   const double edge = mesh::loop_length(opened.mesh, opened.rims[0]) / opened.rims[0].size();
   const double near = 0.03 * region_.size() + 4 * fit.fitted.rms_after + 0.25 * edge;
-  return objection_to({opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, near, options.threads});
+  return objection_to({opened.mesh, opened.rims, out.mesh, in_opened, fit.mesh, near, options.threads, opened.crossed});
 }
 
 void Mender::give_up(Objection why) const {

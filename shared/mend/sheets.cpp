@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "parts/mesh/edges.h"
 
@@ -75,11 +77,19 @@ class DepthOfSheet {
 }  // namespace
 
 Sheets::Sheets(const Scan& scan, const std::vector<std::vector<int>>& sheets)
-    : scan_(scan), sheets_(sheets), selected_(scan.mesh().vertices.size(), 0) {
-  std::vector<int> sheet_of(scan.mesh().faces.size(), -1);
+    : scan_(scan),
+      sheets_(sheets),
+      area_(sheets.size(), 0),
+      selected_(scan.mesh().vertices.size(), 0),
+      sheet_of_(scan.mesh().faces.size(), -1) {
+  const Mesh& mesh = scan.mesh();
   for (std::size_t s = 0; s < sheets.size(); ++s)
-    for (int f : sheets[s]) sheet_of[f] = int(s), ++selected_[scan.component()[scan.mesh().faces[f][0]]];
-  bend_ = bends(scan.mesh(), sheet_of, sheets.size());
+    for (int f : sheets[s]) {
+      sheet_of_[f] = int(s);
+      ++selected_[scan.component()[mesh.faces[f][0]]];
+      area_[s] += mesh.area(f);
+    }
+  bend_ = bends(mesh, sheet_of_, sheets.size());
 }
 
 std::vector<char> Sheets::not_meant(const std::vector<int>& group) const {
@@ -87,7 +97,7 @@ std::vector<char> Sheets::not_meant(const std::vector<int>& group) const {
   if (group.size() < 2) return out;
   const Mesh& mesh = scan_.mesh();
   const auto component = [&](int sheet) { return scan_.component()[mesh.faces[sheets_[sheet][0]][0]]; };
-  const int flaw = *std::max_element(group.begin(), group.end(), [&](int a, int b) { return bend_[a] < bend_[b]; });
+  const int flaw = flaw_of(group);
   const DepthOfSheet front(mesh, sheets_[flaw]);
   for (std::size_t i = 0; i < group.size(); ++i) {
     const int s = group[i];
@@ -96,6 +106,66 @@ std::vector<char> Sheets::not_meant(const std::vector<int>& group) const {
     out[i] = (component(s) != component(flaw) && partly) || front.hides(mesh, sheets_[s]);
   }
   return out;
+}
+
+namespace {
+
+Vec3 center_of(const Mesh& mesh, const std::vector<int>& faces) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (int f : faces) sum += mesh.area(f) * mesh.center(f), area += mesh.area(f);
+  return sum / std::max(area, 1e-300);
+}
+
+/// Cells of a grid across a direction.
+class Outline {
+ public:
+  using Cells = std::set<std::array<int, 2>>;
+  Outline(const Vec3& along, const Vec3& center, double cell)
+      : x_(along.unitOrthogonal()), y_(along.cross(x_)), center_(center), cell_(cell) {}
+  std::array<int, 2> operator()(const Vec3& p) const {
+    return {int(std::floor((p - center_).dot(x_) / cell_)), int(std::floor((p - center_).dot(y_) / cell_))};
+  }
+  Cells of(const Mesh& mesh, const std::vector<int>& faces) const {
+    Cells cells;
+    for (int f : faces) {
+      cells.insert((*this)(mesh.center(f)));
+      for (int v : mesh.faces[f]) cells.insert((*this)(mesh.vertices[v]));
+    }
+    return cells;
+  }
+
+ private:
+  Vec3 x_, y_, center_;
+  double cell_;
+};
+
+}  // namespace
+
+bool Sheets::is_far_side(int sheet, int of) const {
+  constexpr double kSmoother = 0.6, kSameOutline = 0.5, kAllSelected = 0.95;
+  if (!(bend_[sheet] * area_[of] < kSmoother * bend_[of] * area_[sheet])) return false;
+  const Mesh& mesh = scan_.mesh();
+  const Vec3 near = center_of(mesh, sheets_[of]), far = center_of(mesh, sheets_[sheet]);
+  Vec3 normal = Vec3::Zero();
+  for (int f : sheets_[of]) normal += mesh.area_vector(f);
+  const Vec3 along = (near - far).normalized();
+  if (!(along.dot(normal.normalized()) > 0.5)) return false;
+  const Outline outline(along, near, std::sqrt(area_[of]) / 8);
+  const Outline::Cells a = outline.of(mesh, sheets_[of]), b = outline.of(mesh, sheets_[sheet]);
+  Outline::Cells both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
+  if (double(both.size()) < kSameOutline * double(a.size() + b.size() - both.size())) return false;
+  // Inner cells only: those at the outline are selected in part.
+  long inside = 0, selected = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto [i, j] = outline(mesh.center(f));
+    bool inner = true;
+    for (int di = -1; di <= 1; ++di)
+      for (int dj = -1; dj <= 1; ++dj) inner = inner && both.count({i + di, j + dj}) > 0;
+    if (inner) ++inside, selected += sheet_of_[f] >= 0;
+  }
+  return inside > 0 && double(selected) >= kAllSelected * double(inside);
 }
 
 }  // namespace parts::mend

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "parts/mend/scan.h"
@@ -22,11 +23,21 @@ class Sheets {
   /// @return for each of them, 1 = left out
   std::vector<char> not_meant(const std::vector<int>& group) const;
 
+  /// Whether one sheet is the far side of the selection that made the other:
+  /// in line with it, of the same outline, smoother, and all between is selected.
+  bool is_far_side(int sheet, int of) const;
+
+  /// Of a group the most bent one.
+  int flaw_of(const std::vector<int>& group) const {
+    return *std::max_element(group.begin(), group.end(), [&](int a, int b) { return bend_[a] < bend_[b]; });
+  }
+
  private:
   const Scan& scan_;
   const std::vector<std::vector<int>>& sheets_;
-  std::vector<double> bend_;   ///< how far each is from flat
-  std::vector<int> selected_;  ///< faces, per component
+  std::vector<double> bend_, area_;  ///< how far each is from flat; world units
+  std::vector<int> selected_;        ///< faces, per component
+  std::vector<int> sheet_of_;        ///< per face, -1 = none
 };
 
 }  // namespace parts::mend

@@ -146,6 +146,28 @@ TEST(Region, ASelectionThroughTheModelMeansItsFront) {
   EXPECT_TRUE(beside[0].not_meant.empty());
 }
 
+TEST(Region, TheFarSideOfASelectionIsNotMeant) {
+  // A ball with a dent, and a rectangle drawn around it, which takes the far side as well.
+  Mesh m = sphere(Vec3::Zero(), 1, 5);
+  for (Vec3& p : m.vertices)
+    if (const double d = (p - Vec3::UnitZ()).norm(); d < 0.25) p *= 1 - 0.1 * std::cos(d / 0.25 * M_PI / 2);
+  const auto in_rectangle = [](const Vec3& c) { return std::abs(c.x()) < 0.3 && std::abs(c.y()) < 0.2; };
+  m.face_selected = faces_where(m, in_rectangle);
+  Progress silent;
+  std::vector<mend::Region> regions = mend::flaw_regions(mend::Scan(m), {}, silent);
+  ASSERT_EQ(regions.size(), 1u);
+  EXPECT_GT(regions[0].box.min().z(), 0);
+  EXPECT_GT(regions[0].not_meant.size(), 50u);
+  // Dented there too, it is a flaw of its own; so is one of another outline.
+  Mesh both = m;
+  for (Vec3& p : both.vertices)
+    if (const double d = (p + Vec3::UnitZ()).norm(); d < 0.25) p *= 1 - 0.1 * std::cos(d / 0.25 * M_PI / 2);
+  EXPECT_EQ(mend::flaw_regions(mend::Scan(both), {}, silent).size(), 2u);
+  m.face_selected =
+      faces_where(m, [&](const Vec3& c) { return in_rectangle(c) && (c.z() > 0 || c.head<2>().norm() < 0.1); });
+  EXPECT_EQ(mend::flaw_regions(mend::Scan(m), {}, silent).size(), 2u);
+}
+
 /// A sphere slit from pole to pole, as at the seam of a texture, its sides rounded apart.
 Mesh slit_sphere(double apart) {
   Mesh m = sphere(Vec3::Zero(), 1, 4);
