@@ -215,7 +215,9 @@ std::string doubt(const depth::Evidence& e) {
   text << "The result is not to be trusted: the image may be of another class, or of a pose or light that no example "
           "has (patches "
        << e.strangeness << " times as far as those of the strangest member, silhouettes alike to " << 100 * e.silhouette
-       << " %, two halves of the database apart by " << 100 * e.halves << " % of the depth).";
+       << " %, two halves of the database apart by " << 100 * e.halves << " % of the depth";
+  if (e.view_margin > 0) text << ", seen from elsewhere " << e.view_margin << " times as far";
+  text << ").";
   return text.str();
 }
 

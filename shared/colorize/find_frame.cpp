@@ -55,6 +55,13 @@ class Viewer {
   double frame_;
 };
 
+/// +x, -x, +y, -y, +z, -z.
+Vec3 axis(int i) {
+  Vec3 a = Vec3::Zero();
+  a[i / 2] = i % 2 ? -1 : 1;
+  return a;
+}
+
 /// How a mesh is turned that stands so, to stand like the models.
 Eigen::Matrix3d turn(const Standing& from, const Standing& to) {
   return render::view_rotation({}, to.up, to.front).transpose() * render::view_rotation({}, from.up, from.front);
@@ -89,7 +96,7 @@ std::optional<Standing> find_frame(const Mesh& posed, examples::ClassModels& mod
   for (int up = 0; up < 6; ++up)
     for (int front = 0; front < 6; ++front) {
       if (up / 2 == front / 2) continue;
-      const Standing s{Vec3::Unit(up / 2) * (up % 2 ? -1 : 1), Vec3::Unit(front / 2) * (front % 2 ? -1 : 1)};
+      const Standing s{axis(up), axis(front)};
       if (const double m = misfit_of(turn(s, of_models) * back); m < least) least = m, best = s;
     }
   return best;

@@ -16,8 +16,9 @@ struct Evidence {
   /// the difference, as a share of the depth range.
   double halves = 0;
   /// How much farther the patches are from the examples seen from elsewhere, 30
-  /// degrees away: the least such quotient. 2 where views are not free.
-  double view_margin = 2;
+  /// degrees away: the least such quotient. Where the wrong view explains the
+  /// image as well, none does. 0: not known, as views are stored.
+  double view_margin = 0;
 };
 
 }  // namespace parts::depth

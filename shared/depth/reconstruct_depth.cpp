@@ -106,23 +106,32 @@ struct Viewpoints {
   std::optional<render::View> found;  ///< nothing where it was not searched
 };
 
-/// Searches the view and the light as far as the options ask for it; the gallery
-/// is left in the light that was found.
+bool same_light(const std::optional<examples::Light>& a, const std::optional<examples::Light>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->direction == b->direction && a->ambient == b->ambient));
+}
+
+/// Searches the view and the light as far as the options ask for it, by turns: a
+/// light that was found from the wrong view may have misled the search for the
+/// view. The gallery is left in the light that was found.
 Viewpoints search_view_and_light(const synthesis::PatchImage& small, Gallery& gallery, const DepthOptions& options,
                                  Progress& progress) {
   Viewpoints result{options.views, {}};
   const auto search_light = [&](const render::View& view) {
-    if (options.update_light && gallery.light()) gallery.set_light(find_light(small, gallery, view, options));
+    const std::optional<examples::Light> before = gallery.light();
+    if (options.update_light && before) gallery.set_light(find_light(small, gallery, view, options));
+    return !same_light(before, gallery.light());
   };
+  const auto is_near = [&](const render::View& v) { return render::angle_between(v, *result.found) < same_view; };
+  progress.stage("Searching the view", 10, 24);
   search_light(options.views.front());
   if (!options.update_views) return result;
   result.found = find_view(small, gallery, options, progress);
-  const auto near = std::find_if(options.views.begin(), options.views.end(), [&](const render::View& v) {
-    return render::angle_between(v, *result.found) < same_view;
-  });
+  if (render::angle_between(*result.found, options.views.front()) > 2 * same_view && search_light(*result.found)) {
+    progress.stage("Searching the view", 24, 35);
+    result.found = find_view(small, gallery, options, progress);
+  }
+  const auto near = std::find_if(options.views.begin(), options.views.end(), is_near);
   result.views = {near != options.views.end() ? *near : *result.found};
-  if (render::angle_between(result.views.front(), options.views.front()) > 2 * same_view)
-    search_light(result.views.front());
   return result;
 }
 
@@ -229,7 +238,6 @@ DepthResult reconstruct_depth(const DepthQuery& given, examples::ExampleSource& 
   }
   progress.stage("Aligning", 5, 10);
   const PlacedQuery placed = place_in_frame(query, gallery, options);
-  progress.stage("Searching the view", 10, 35);
   const Viewpoints from = search_view_and_light(placed.small, gallery, options, progress);
   progress.stage("Choosing examples", 35, 40);
   ExampleSet set(gallery, options, from.views, placed.small);

@@ -10,7 +10,9 @@
 namespace parts::depth {
 namespace {
 
-constexpr double untrusted = 1.5;  ///< strangeness from which on a query is too unlike the class
+// Calibrated on every fourth and fifth head, hand and body (bench_trust).
+constexpr double most_strangeness = 1.2, least_overlap = 0.8, least_margin = 1.25;
+constexpr double most_difference = 0.12;  // where views are stored and no margin is to be had
 
 using Images = std::vector<synthesis::PatchImage>;
 
@@ -89,7 +91,7 @@ double view_margin(const synthesis::PatchImage& query, const Members& members, G
                    const DepthOptions& options) {
   constexpr size_t objects = 4;
   constexpr double away = 30;
-  if (!gallery.has_any_view() || !options.update_views || members.images.empty()) return 2;
+  if (!gallery.has_any_view() || members.images.empty()) return 0;
   const size_t count = std::min(objects, members.images.size());
   const auto from = [&](double yaw, double pitch) {
     Images some;
@@ -105,7 +107,7 @@ double view_margin(const synthesis::PatchImage& query, const Members& members, G
   for (const auto& [yaw, pitch] :
        {std::pair(away, 0.), std::pair(-away, 0.), std::pair(0., away), std::pair(0., -away)})
     least = std::min(least, from(yaw, pitch));
-  return here > 0 ? least / here : 2;
+  return here > 0 ? least / here : 0;
 }
 
 }  // namespace
@@ -122,6 +124,9 @@ Evidence gather_evidence(const synthesis::PatchImage& small, const ExampleSet& s
   return e;
 }
 
-bool is_trusted(const Evidence& evidence) { return evidence.strangeness < untrusted; }
+bool is_trusted(const Evidence& e) {
+  if (!(e.strangeness < most_strangeness) || e.silhouette < least_overlap) return false;
+  return e.view_margin > 0 ? e.view_margin >= least_margin : e.halves <= most_difference;
+}
 
 }  // namespace parts::depth

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth from one image: speed, and accuracy, leaving one object out, beside the
 // class mean and the nearest example.
-// bench_depth [speed|light|accuracy|views|sizes|ablations] [EVERY]: of the
+// bench_depth [speed|light|accuracy|views|sizes|lumps|ablations] [EVERY]: of the
 // queries only each EVERY-th.
 
 #include <algorithm>
@@ -9,10 +9,13 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <opencv2/imgproc.hpp>
 #include <random>
+#include <sstream>
 
 #include "bench/leave_one_out.h"
 #include "bench/measure.h"
+#include "parts/depth/gallery.h"
 #include "parts/depth/small_level.h"
 #include "parts/synthesis/pyramid.h"
 
@@ -64,6 +67,60 @@ void views(int every) {
     table.row({known ? "known" : "searched", count(s.count), count(s.found), text(s.angle), share(s.ours.offset),
                text(s.ours.offset / s.mean.offset), text(s.ours.offset / s.nearest.offset), text(s.wall), text(s.cpu)});
   }
+}
+
+/// What lies above the neck, the narrowest row of the lower half of a bust.
+void keep_head(examples::Example& e) {
+  const cv::Rect box = cv::boundingRect(e.mask);
+  int neck = box.y + box.height / 3, least = 1 << 30;
+  for (int y = box.y + box.height / 3; y < box.br().y; ++y)
+    if (const int width = cv::countNonZero(e.mask.row(y)); width < least) least = width, neck = y;
+  cv::Mat below = cv::Mat::zeros(e.mask.size(), CV_8U);
+  below.rowRange(neck, below.rows).setTo(255);
+  e.mask.setTo(0, below);
+  const cv::Rect head = cv::boundingRect(e.mask), frame({0, 0}, e.mask.size());
+  const cv::Rect part = cv::Rect(head.x - 12, head.y - 12, head.width + 24, head.height + 24) & frame;
+  for (cv::Mat* m : {&e.image, &e.depth, &e.mask}) *m = (*m)(part).clone();
+  e.camera.width = part.width, e.camera.height = part.height;
+}
+
+/// Skin as it is: a scanned head by the rendered ones, in three lights; and noise.
+void lumps(int every) {
+  Table table("Lumps: a real head scan by the heads, in their light and others; heads with noise of 3 % of the range",
+              {"query", "error", "of mean", "normals", "mean's", "roughness, of the truth's", "mean's", "cpu s"});
+  const auto all = open_class("heads");
+  const auto row = [&](const std::string& name, const Score& s) {
+    table.row({name, share(s.ours.offset), text(s.ours.offset / s.mean.offset), text(s.ours.angle), text(s.mean.angle),
+               text(s.ours.roughness), text(s.mean.roughness), text(s.cpu)});
+  };
+  depth::DepthOptions options;
+  if (std::filesystem::exists(std::string(PARTS_DATA) + "/head_scan")) {
+    const auto scan = open_class("head_scan", 300, 400);
+    for (const Vec3& towards : {Vec3(0.3, 0.4, 0.85), Vec3(-0.6, 0.1, 0.8), Vec3(0, 0.7, 0.7)}) {
+      scan->set_light({towards, 0.35});
+      Score s;
+      examples::Example head = scan->get(0, {0, 0});
+      keep_head(head);
+      compare_with_others(*all, head, {0, 0}, options, 1, s);
+      std::ostringstream name;
+      name << "scan, light " << towards.transpose();
+      row(name.str(), s);
+    }
+  }
+  Score s;
+  options.align = options.update_views = false;
+  const int step = std::max(every, 8), n = (all->size() + step - 1) / step;
+  for (int k = 0; k < all->size(); k += step) {
+    Others others(*all, k);
+    examples::Example q = all->get(k, {0, 0});
+    cv::Mat noise(q.image.size(), CV_16SC3), noisy;
+    cv::RNG(unsigned(k + 1)).fill(noise, cv::RNG::NORMAL, 0, 8);
+    cv::GaussianBlur(noise, noise, {3, 3}, 0);
+    cv::add(q.image, noise, noisy, cv::noArray(), CV_8U);
+    noisy.copyTo(q.image, q.mask);
+    compare_with_others(others, q, {0, 0}, options, 1. / n, s);
+  }
+  row("heads with noise", s);
 }
 
 void ablations(int every) {
@@ -198,5 +255,6 @@ int main(int argc, char** argv) {
   if (what.empty() || what == "accuracy") accuracy(every);
   if (what.empty() || what == "views") views(every);
   if (what.empty() || what == "sizes") sizes(every);
+  if (what.empty() || what == "lumps") lumps(every);
   if (what.empty() || what == "ablations") ablations(every);
 }

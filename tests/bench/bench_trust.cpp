@@ -2,8 +2,8 @@
 // How well a depth says that it is not to be trusted: members of the class, in
 // known and unknown views and lights, members of other classes, cartoons and
 // textures; a result is bad where it is worse than the class mean.
-// bench_trust [EVERY [CLASS]]: of the queries only each EVERY-th; one line each
-// and a table.
+// bench_trust [EVERY [CLASS [KIND]]]: of the queries only each EVERY-th; one line
+// each and a table.
 
 #include <algorithm>
 #include <cstdlib>
@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
     for (const char* what : {"front", "view", "view and light", "other class", "cartoon", "texture"}) {
       Kind kind{classes[c] + ", " + what};
       const std::string w = what;
+      if (argc > 3 && w != argv[3]) continue;
       examples::ExampleSource& from = w == "other class" ? *foreign : w == "view and light" ? *lit : *database;
       for (int k = 0; k < from.size(); k += every) {
         const bool turned = w.substr(0, 4) == "view";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "bench/measure.h"
 #include "parts/depth/alignment.h"
@@ -30,6 +31,15 @@ cv::Vec3f normal(const cv::Mat& d, int x, int y) {
 
 /// Both in pixels, over the mask: after aligning the offset, and the scale too;
 /// and the mean angle between normals.
+/// Root mean square of the Laplacian of depth in pixels, at most one a pixel: jumps are no roughness.
+double roughness(const cv::Mat& depth, const cv::Mat& mask) {
+  cv::Mat inside, laplacian;
+  cv::erode(mask, inside, cv::Mat::ones(9, 9, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
+  cv::Laplacian(synthesis::extend(depth, mask), laplacian, CV_32F);
+  laplacian = cv::min(cv::max(laplacian, -1), 1);
+  return std::sqrt(cv::mean(laplacian.mul(laplacian), inside)[0]);
+}
+
 Error compare(const cv::Mat& depth, const cv::Mat& truth, const cv::Mat& mask) {
   double low, high, n = 0, sd = 0, st = 0, sdd = 0, sdt = 0, stt = 0, angle = 0, normals = 0;
   cv::minMaxLoc(truth, &low, &high, nullptr, nullptr, mask);
@@ -44,18 +54,24 @@ Error compare(const cv::Mat& depth, const cv::Mat& truth, const cv::Mat& mask) {
     }
   const double vd = sdd - sd * sd / n, vt = stt - st * st / n, c = sdt - sd * st / n, s = vd > 0 ? c / vd : 0;
   return {std::sqrt(std::max(0., vd + vt - 2 * c) / n) / (high - low),
-          std::sqrt(std::max(0., vt - 2 * s * c + s * s * vd) / n) / (high - low), angle / normals * 180 / CV_PI};
+          std::sqrt(std::max(0., vt - 2 * s * c + s * s * vd) / n) / (high - low), angle / normals * 180 / CV_PI,
+          roughness(depth, mask) / std::max(1e-9, roughness(truth, mask))};
 }
 
-/// An example's depth, moved so that its centroid lies on the query's.
+/// An example's depth, moved so that its centroid lies on the query's; where the
+/// images differ in size, as large as the query too.
 cv::Mat moved(const cv::Mat& depth, const examples::Example& e, const examples::Example& query) {
-  const cv::Point2d by = render::centroid(query.mask) - render::centroid(e.mask);
+  const cv::Point2d from = render::centroid(e.mask), to = render::centroid(query.mask);
+  const double scale = e.mask.size() == query.mask.size()
+                           ? 1
+                           : std::sqrt(double(cv::countNonZero(query.mask)) / cv::countNonZero(e.mask));
   const cv::Mat full = synthesis::extend(depth, e.mask);
-  cv::Mat result(full.size(), CV_32F);
-  for (int y = 0; y < full.rows; ++y)
-    for (int x = 0; x < full.cols; ++x)
-      result.at<float>(y, x) = full.at<float>(std::clamp(int(std::lround(y - by.y)), 0, full.rows - 1),
-                                              std::clamp(int(std::lround(x - by.x)), 0, full.cols - 1));
+  cv::Mat result(query.mask.size(), CV_32F);
+  for (int y = 0; y < result.rows; ++y)
+    for (int x = 0; x < result.cols; ++x)
+      result.at<float>(y, x) =
+          float(scale * full.at<float>(std::clamp(int(std::lround((y - to.y) / scale + from.y)), 0, full.rows - 1),
+                                       std::clamp(int(std::lround((x - to.x) / scale + from.x)), 0, full.cols - 1)));
   return result;
 }
 

@@ -35,8 +35,10 @@ std::unique_ptr<examples::ExampleSource> open_class(const std::string& name, int
 
 struct Error {
   double offset = 0, scale = 0, angle = 0;  ///< shares of the depth range, degrees
+  double roughness = 0;                     ///< away from the silhouette, as a multiple of the truth's
   void add(const Error& e, double share) {
     offset += e.offset * share, scale += e.scale * share, angle += e.angle * share;
+    roughness += e.roughness * share;
   }
 };
 

@@ -36,6 +36,18 @@ class ColorizeMesh(lib.MeshCase):
     def fails(self, *words, **values):
         self.assertFailed(run([self.query], [self.step(**values)]), *words)
 
+    def test_a_mesh_that_lies_gets_the_colours_of_one_that_stands(self):
+        """Found by itself, or said: Up and Front turn the mesh, and not the models as well."""
+        standing = self.colored(Target="Vertex colour").mesh().color[:, :3].astype(int)
+        x, y, z = self.mesh.v.T
+        lying = shapes.Mesh(np.stack([x, -z, y], 1), self.mesh.f)
+        found = self.colored(lying, Target="Vertex colour")
+        self.assertEqual((found.figures()["up"], found.figures()["front"]), ("0 0 1", "0 -1 0"))
+        said = self.colored(lying, Target="Vertex colour", Up=(0, 0, 1), Front=(0, -1, 0))
+        self.assertNotIn("up", said.figures())
+        for result in (found, said):
+            self.assertLess(abs(result.mesh().color[:, :3].astype(int) - standing).mean(), 6)
+
     def test_an_atlas_and_then_these_coordinates(self):
         bare = shapes.Mesh(self.mesh.v, self.mesh.f)
         texture = self.folder / "atlas.png"
