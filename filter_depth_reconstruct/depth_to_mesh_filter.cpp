@@ -59,7 +59,7 @@ bool same_proportions(cv::Size a, cv::Size b) {
 /// A photograph says how the camera was held and a depth raster does not: rows and
 /// columns as they are stored belong together, unless only the upright ones fit.
 io::Image image_for(const std::string& file, cv::Size depth, Progress& progress) {
-  io::Image image = io::read_image(file, io::Turn::AsStored);
+  io::Image image = io::read_image(file, io::Turn::AsStored, [&] { progress.at(0.5); });
   if (image.orientation == 1) return image;
   const bool turn = !same_proportions(image.color.size(), depth);
   if (turn) image = io::read_image(file);
@@ -76,8 +76,9 @@ Input read(const Inputs& inputs, Progress& progress) {
   if (scale == 0) throw UserError("DepthScale is 0, which makes all depths 0; give another value.");
   progress.stage("Reading", 0, 20);
   Input in;
-  in.depth = io::read_depth(depth, scale);
-  if (!back.empty()) in.back = io::read_depth(back, scale);
+  const Poll poll = [&] { progress.at(0); };
+  in.depth = io::read_depth(depth, scale, poll);
+  if (!back.empty()) in.back = io::read_depth(back, scale, poll);
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;
   progress.at(0.5);

@@ -65,7 +65,7 @@ std::string ModelCache::file(int model) const {
   const fs::path from_here = fs::relative(
       database_.file(model), fs::path(folder_).parent_path().empty() ? "." : fs::path(folder_).parent_path(), error);
   char unique[32];
-  const Key k = key(model);
+  const RasterKey k = key(model);
   std::snprintf(unique, sizeof unique, ".%016llx",
                 static_cast<unsigned long long>(
                     hash_of((error ? database_.file(model) : from_here.string()) + std::to_string(k.matrix))));
