@@ -68,8 +68,9 @@ Input read(const Inputs& inputs, Progress& progress) {
   const render::BackgroundRule background = render::parse_background(inputs.text("Background"));
   progress.stage("Reading", 0, 20);
   Input in;
-  in.depth = io::read_depth(depth, scale);
-  if (!back.empty()) in.back = io::read_depth(back, scale);
+  const Poll poll = [&] { progress.at(0); };
+  in.depth = io::read_depth(depth, scale, poll);
+  if (!back.empty()) in.back = io::read_depth(back, scale, poll);
   in.background = render::remove_background(background, scale, in.depth, in.back);
   in.image_file = inputs.text("Image");
   if (in.image_file.empty()) return in;

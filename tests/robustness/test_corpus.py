@@ -31,15 +31,17 @@ def main():
         return 0
     with open(RECORD, newline="") as file:
         recorded = {(mesh, slug): grade for mesh, slug, grade in csv.reader(file)}
-    worse = [r for r in rows if RANK[r.grade] > RANK[recorded.get((r.mesh, r.filter), "clean")]]
-    better = [r for r in rows if RANK[r.grade] < RANK[recorded.get((r.mesh, r.filter), "clean")]]
+    before = {r: recorded.get((r.mesh, r.filter)) for r in rows}
+    worse = [r for r in rows if RANK[r.grade] > (RANK[before[r]] if before[r] else 1)]
+    better = [r for r in rows if before[r] and RANK[r.grade] < RANK[before[r]]]
+    new = [r for r in rows if not before[r]]
     missing = set(recorded) - {(r.mesh, r.filter) for r in rows}
-    for what, found in (("worse", worse), ("better, so record it", better)):
+    for what, found in (("worse", worse), ("better, so record it", better), ("new, so record it", new)):
         for r in found:
-            print(f"{what}: {r.mesh} {r.filter}: {recorded.get((r.mesh, r.filter))} -> {r.grade} {r.note}")
+            print(f"{what}: {r.mesh} {r.filter}: {before[r]} -> {r.grade} {r.note}")
     for mesh, slug in sorted(missing):
         print(f"no longer run: {mesh} {slug}")
-    print(f"{len(rows)} runs, {len(worse)} worse, {len(better)} better, {len(missing)} missing")
+    print(f"{len(rows)} runs, {len(worse)} worse, {len(better)} better, {len(new)} new, {len(missing)} missing")
     return 1 if worse or missing or not rows else 0
 
 
