@@ -70,9 +70,12 @@ class MeshCutter {
 
   /// @throws UserError  there is no cut
   void cut_coarsely() {
-    std::vector<char> near[2];
-    for (int x : {0, 1}) near[x] = faces_near_other(x);
-    prepare(marks_, near, kCoarseEdge);
+    std::vector<char> open[2];
+    for (int x : {0, 1})
+      for (Territory mark : marks_[x]) open[x].push_back(!mark);
+    prepare(marks_, open, kCoarseEdge, [&](int x, const Vec3& p, double distance) {
+      return tree_[1 - x].nearest(p, kZone * scale() + distance).face >= 0;
+    });
     labels_ = choose_labels(problem_, kCoarseReach * scale(), 1, threads_);
     if (labels_.found) return;
     if (!labels_.possible)
@@ -87,13 +90,16 @@ class MeshCutter {
   void cut_finely() {
     std::vector<Territory> forced[2];
     std::vector<char> open[2];
-    lock_far_faces(forced, open);
+    const Zone zone = seam_zone();
+    lock_far_faces(zone, forced, open);
     MeshProblem coarse = std::move(problem_);
     MeshLabels labels = std::move(labels_);
     std::vector<SplitPoint> points[2] = {std::move(points_[0]), std::move(points_[1])};
     problem_ = MeshProblem();
     problem_.scale = coarse.scale;
-    prepare(forced, open, kFineEdge);
+    prepare(forced, open, kFineEdge, [&](int, const Vec3& p, double distance) {
+      return zone.tree.nearest(p, zone.radius + distance).face >= 0;
+    });
     labels_ = choose_labels(problem_, std::max(kCoarseReach * scale(), labels.reach / 2), 0, threads_);
     if (labels_.found) return;
     problem_ = std::move(coarse), labels_ = std::move(labels);
@@ -153,16 +159,6 @@ class MeshCutter {
   const Mesh& mesh(int x) const { return model_[x]->prepared.mesh; }
   double scale() const { return problem_.scale; }
 
-  std::vector<char> faces_near_other(int x) const {
-    std::vector<char> near(mesh(x).faces.size(), 0);
-    for (int f = 0; f < mesh(x).face_count(); ++f) {
-      const double longest = longest_edge(x, f);
-      near[f] = !marks_[x][f] && longest > kCoarseEdge * scale() &&
-                tree_[1 - x].nearest(mesh(x).center(f), kZone * scale() + 0.6 * longest).face >= 0;
-    }
-    return near;
-  }
-
   double longest_edge(int x, int f) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
@@ -171,10 +167,14 @@ class MeshCutter {
   }
 
   /// Makes the work meshes: the models split along the curve, the flagged faces down to an edge.
-  void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge) {
+  /// @param near  of A's (0) or B's surface: whether points are wanted within a distance of a place
+  void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge,
+               const std::function<bool(int, const Vec3&, double)>& near) {
     for (int x : {0, 1}) {
       points_[x] = split_points(curve_, mesh(x), x == 0);
-      add_even_points(mesh(x), split[x], still_[x], edge * scale(), points_[x]);
+      add_even_points(
+          mesh(x), split[x], still_[x], edge * scale(),
+          [&](const Vec3& p, double distance) { return near(x, p, distance); }, points_[x]);
       std::vector<SplitSegment> segments;
       for (const CrossingSegment& s : curve_.segments) segments.push_back({x ? s.face_b : s.face_a, s.ends});
       problem_.side[x] = make_work_mesh(*model_[x], volume_, forced[x], points_[x], segments);
@@ -235,8 +235,12 @@ class MeshCutter {
     return m.closed[m.component[face]] && tree_[x].winding(p, (normal + aslant).normalized(), 1e-5 * scale()) != 0;
   }
 
-  /// Faces far from the seam keep their label; the others are open again.
-  void lock_far_faces(std::vector<Territory> (&forced)[2], std::vector<char> (&open)[2]) const {
+  /// The surroundings of the seam found.
+  struct Zone {
+    spatial::FaceTree tree;  ///< of its edges
+    double radius;           ///< world units
+  };
+  Zone seam_zone() const {
     Mesh seam;  // its edges, as faces without area
     double edges = 0;
     long count = 0;
@@ -251,8 +255,12 @@ class MeshCutter {
           edges += std::min(longest_edge(x, w.source[w.edge_faces[k]]), kCoarseEdge * scale());
       }
     }
-    const spatial::FaceTree tree(seam);
-    const double zone = std::max({kZone * scale(), 1.5 * labels_.reach, 2 * edges / double(std::max(1L, count))});
+    return {spatial::FaceTree(seam),
+            std::max({kZone * scale(), 1.5 * labels_.reach, 2 * edges / double(std::max(1L, count))})};
+  }
+
+  /// Faces far from the seam keep their label; the others are open again.
+  void lock_far_faces(const Zone& zone, std::vector<Territory> (&forced)[2], std::vector<char> (&open)[2]) const {
     for (int x : {0, 1}) {
       const WorkMesh& w = problem_.side[x];
       forced[x] = marks_[x];
@@ -264,7 +272,7 @@ class MeshCutter {
         const Vec3 center = mesh(x).center(f);
         double radius = 0;
         for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh(x).corner(f, k) - center).norm());
-        open[x][f] = tree.nearest(center, zone + radius).face >= 0;
+        open[x][f] = zone.tree.nearest(center, zone.radius + radius).face >= 0;
         if (!open[x][f]) forced[x][f] = label[f];
       }
     }
