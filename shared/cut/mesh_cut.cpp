@@ -35,6 +35,7 @@ class MeshCutter {
         tree_{spatial::FaceTree(mesh(0)), spatial::FaceTree(mesh(1))},
         curve_(find_crossings(mesh(0), tree_[0], mesh(1), tree_[1])) {
     problem_.scale = std::min(rms_size(mesh(0)), rms_size(mesh(1)));
+    if (!(scale() > 0)) throw UserError("A model has no area; choose layers that hold surfaces.");
     for (int x : {0, 1}) {
       const std::vector<char>& keep = model_[x]->keep;
       marks_[x].assign(mesh(x).faces.size(), 0);

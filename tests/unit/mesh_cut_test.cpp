@@ -154,6 +154,11 @@ TEST(MeshCut, WhatMustGoGoes) {
   EXPECT_NE(user_error([&, &a = a, &b = b] { compose_quietly(a, b, thesis); }).find("Thesis"), std::string::npos);
 }
 
+TEST(RmsSize, DoesNotDependOnTheTessellation) {
+  EXPECT_NEAR(cut::rms_size(box({-1, -1, -1}, {1, 1, 1}, 1)), std::sqrt(1 + 2. / 3), 1e-12);
+  EXPECT_NEAR(cut::rms_size(box({-1, -1, -1}, {1, 1, 1}, 7)), std::sqrt(1 + 2. / 3), 1e-12);
+}
+
 TEST(SeamScore, CountsAsItsDefinitionDoes) {
   // Two facing straight borders of length 1, 0.05 apart, at a right angle; S = 1.
   const auto line = [](double y, const Vec3& normal) { return cut::BorderEdge{Vec3(0, y, 0), Vec3(1, y, 0), normal}; };
