@@ -5,13 +5,8 @@
 #include <chrono>
 #include <memory>
 #include <unordered_map>
-#include <unordered_set>
 
-#include "parts/base/disjoint_sets.h"
 #include "parts/base/error.h"
-#include "parts/cut/seam_values.h"
-#include "parts/mesh/edges.h"
-#include "parts/mesh/loops.h"
 
 namespace parts::cut {
 namespace {
@@ -144,11 +139,13 @@ class MeshCutter {
     const SeamValues values = smooth_values(*model_[0], *model_[1], problem_, labels_, curve_, kFineEdge * scale());
     MeshCut cut;
     cut.edge = values.edge, cut.gap = values.gap;
-    for (int x : {0, 1}) cut.border[x] = smooth_border(x, values), cut.loops[x] = label_loops(x);
+    for (int x : {0, 1}) cut.border[x] = smooth_border(labelled(x), values), cut.loops[x] = count_loops(labelled(x));
     return cut;
   }
 
-  MeshBorder raw_border(int x) const;
+  LabelledModel labelled(int x) const {
+    return {mesh(x), x, points_[x], still_[x], curve_, problem_.side[x], labels_.label[x]};
+  }
 
   void report(CutReport& r) const {
     r.scale = scale(), r.reach = labels_.reach;
@@ -279,98 +276,6 @@ class MeshCutter {
     }
   }
 
-  /// The points on and in the model's flagged faces.
-  std::vector<char> points_of(int x, const std::vector<char>& faces) const {
-    std::unordered_set<std::uint64_t> edges;
-    for (int f = 0; f < mesh(x).face_count(); ++f)
-      for (int k = 0; faces[f] && k < 3; ++k)
-        edges.insert(edge_key(mesh(x).faces[f][k], mesh(x).faces[f][(k + 1) % 3]));
-    std::vector<char> used(points_[x].size(), 0);
-    for (std::size_t p = 0; p < used.size(); ++p) {
-      const SplitPoint& point = points_[x][p];
-      used[p] = point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0;
-    }
-    return used;
-  }
-
-  /// The label of the work mesh's part of a face that is nearest to a point.
-  class LabelOfPart {
-   public:
-    LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces)
-        : w_(w), label_(label) {
-      for (int f = 0; f < w.mesh.face_count(); ++f)
-        if (faces[w.source[f]]) parts_[w.source[f]].push_back(f);
-    }
-    Territory operator()(int source, const Vec3& p) const {
-      double least = 1e300;
-      Territory found = 0;
-      for (int f : parts_.at(source)) {
-        const Vec3 q =
-            spatial::nearest_on_triangle(p, w_.mesh.corner(f, 0), w_.mesh.corner(f, 1), w_.mesh.corner(f, 2));
-        if (const double d = (q - p).squaredNorm(); d < least) least = d, found = label_[f];
-      }
-      return found;
-    }
-
-   private:
-    const WorkMesh& w_;
-    const std::vector<Territory>& label_;
-    std::unordered_map<int, std::vector<int>> parts_;
-  };
-
-  MeshBorder smooth_border(int x, const SeamValues& values) const {
-    const WorkMesh& w = problem_.side[x];
-    const double sign = x ? -1 : 1;
-    std::vector<char> passed(mesh(x).faces.size(), 0);  // by the border
-    {
-      std::vector<char> signs(mesh(x).faces.size(), 0);
-      for (int f = 0; f < w.mesh.face_count(); ++f)
-        for (int v : w.mesh.faces[f]) signs[w.source[f]] |= values.value[x][v] > 0 ? 1 : values.value[x][v] < 0 ? 2 : 4;
-      for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = signs[f] >= 3;
-    }
-    std::vector<char> used = points_of(x, passed);
-    std::fill_n(used.begin(), curve_.points.size(), 0);
-    std::vector<SplitSegment> segments;
-    for (std::size_t s = 0; s < curve_.segments.size(); ++s) {
-      if (!values.pinned[s]) continue;
-      const CrossingSegment& segment = curve_.segments[s];
-      segments.push_back({x ? segment.face_b : segment.face_a, segment.ends});
-      for (int end : segment.ends) used[end] = 1;
-    }
-    MeshBorder border;
-    border.split = split_faces(mesh(x), points_[x], used, segments);
-    const SplitMesh& split = border.split;
-    border.value.assign(split.mesh.vertices.size(), 0);
-    for (int v = 0; v < mesh(x).vertex_count(); ++v) border.value[v] = sign * values.value[x][v];
-    for (std::size_t p = 0; p < used.size(); ++p)
-      if (used[p]) border.value[split.vertex_of[p]] = sign * values.value[x][w.vertex_of[p]];
-    const LabelOfPart label(w, labels_.label[x], passed);
-    border.keep_level.assign(split.mesh.faces.size(), 0);
-    for (int f = 0; f < split.mesh.face_count(); ++f) {
-      const Triangle& t = split.mesh.faces[f];
-      if (border.value[t[0]] == 0 && border.value[t[1]] == 0 && border.value[t[2]] == 0)
-        border.keep_level[f] = label(split.source[f], split.mesh.center(f)) == (x ? kOfB : kOfA);
-    }
-    return border;
-  }
-
-  /// How many borders the labels give a model, beside its own.
-  int label_loops(int x) const {
-    const WorkMesh& w = problem_.side[x];
-    std::vector<std::array<int, 2>> border;
-    for (const WorkMesh::Edge& e : w.edges) {
-      int kept = 0, face = -1;
-      for (int k = e.first_face; k < e.end_face; ++k)
-        if (labels_.label[x][w.edge_faces[k]] == (x ? kOfB : kOfA)) ++kept, face = w.edge_faces[k];
-      if (kept != 1 || e.end_face - e.first_face < 2) continue;
-      const Triangle& t = w.mesh.faces[face];
-      for (int k = 0; k < 3; ++k)
-        if (std::min(t[k], t[(k + 1) % 3]) == e.low && std::max(t[k], t[(k + 1) % 3]) == e.high)
-          border.push_back({t[k], t[(k + 1) % 3]});
-    }
-    return int(mesh::trace_loops(border).size());
-  }
-
   const Model* model_[2];
   const Box volume_;
   const int threads_;
@@ -382,32 +287,6 @@ class MeshCutter {
   MeshProblem problem_;
   MeshLabels labels_;
 };
-
-MeshBorder MeshCutter::raw_border(int x) const {
-  const WorkMesh& w = problem_.side[x];
-  const Territory own = x ? kOfB : kOfA;
-  std::vector<char> kept(mesh(x).faces.size(), 0), dropped = kept, passed = kept;
-  for (int f = 0; f < w.mesh.face_count(); ++f) (labels_.label[x][f] == own ? kept : dropped)[w.source[f]] = 1;
-  for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
-  std::vector<char> used = points_of(x, passed);
-  for (std::size_t p = 0; p < used.size(); ++p) {  // what must stay whole has edges in common with what is passed
-    const SplitPoint& point = points_[x][p];
-    if (point.face < 0 && still_[x][point.edge[0]] && still_[x][point.edge[1]]) used[p] = 0;
-  }
-  std::vector<SplitSegment> segments;
-  for (const CrossingSegment& s : curve_.segments)
-    if (const int f = x ? s.face_b : s.face_a; passed[f] && used[s.ends[0]] && used[s.ends[1]])
-      segments.push_back({f, s.ends});
-  MeshBorder border;
-  border.split = split_faces(mesh(x), points_[x], used, segments);
-  border.value.assign(border.split.mesh.vertices.size(), 0);
-  const LabelOfPart label(w, labels_.label[x], passed);
-  for (int f = 0; f < border.split.mesh.face_count(); ++f) {
-    const int source = border.split.source[f];
-    border.keep_level.push_back(passed[source] ? label(source, border.split.mesh.center(f)) == own : kept[source]);
-  }
-  return border;
-}
 
 }  // namespace
 
@@ -424,7 +303,7 @@ MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, int thread
   progress.at(0.8);
   cutter->report(report);
   MeshCut cut = cutter->borders();
-  cut.raw_border = [cutter](int side) { return cutter->raw_border(side); };
+  cut.raw_border = [cutter](int side) { return raw_border(cutter->labelled(side)); };
   report.cut_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return cut;
 }
