@@ -50,7 +50,7 @@ void add_cut(std::vector<Parameter>& list) {
                          "Of the cut Thesis: voxels along the longest side of the volume in which the models are "
                          "joined. 0 chooses from the meshes and the free memory."));
   list.push_back(cut_choice(
-      "Mesh: the minimal cut on a graph of the models' own faces, smooth borders (best for most). Thesis: the "
+      "Mesh: the minimal cut on a graph of the faces of the models, smooth borders (best for most). Thesis: the "
       "published weights as printed, through voxels, borders along their sides."));
   list.push_back(length("BlendDistance", options.smoothing.blend_distance, "Blending distance",
                         "Both surfaces give way up to this distance from the seam, so that they meet without a step or "
@@ -107,7 +107,7 @@ std::vector<Parameter> compose_parameters(const Scene& scene) {
   list.push_back(flag("Stitch", options.stitch, "Stitch",
                       "Joins the borders of the two clipped models. Without it the result holds both clipped models as "
                       "they are: a hat on a head."));
-  add_smoothing("two voxels", list);
+  add_smoothing("two edges of the seam (two voxels with the cut Thesis)", list);
   list.push_back(flag("AddClippedLayers", false, "Add the clipped models",
                       "Adds what is left of each model as the layers \"Clipped A\" and \"Clipped B\", hidden."));
   list.push_back(flag("AddTransitionSurface", options.transition_surface, "Add the transition surface",
@@ -136,7 +136,7 @@ std::vector<Parameter> deform_parameters(const Scene& scene) {
                          "1 gives the final pose. A larger number gives so many layers, from the model at rest to the "
                          "final pose."));
   add_cut(list);
-  add_smoothing("two voxels", list);
+  add_smoothing("as much as keeps the bend from folding (two voxels with the cut Thesis)", list);
   return list;
 }
 

@@ -9,12 +9,14 @@
 #include "parts/cut/decision.h"
 #include "parts/cut/mesh_cut.h"
 #include "parts/cut/rasterize.h"
+#include "parts/cut/seam_score.h"
 #include "parts/cut/transition.h"
 #include "parts/cut/transition_surface.h"
 #include "parts/cut/volume.h"
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/loops.h"
 #include "parts/seam/clip.h"
+#include "parts/spatial/face_tree.h"
 
 namespace parts::compose {
 namespace {
@@ -174,6 +176,25 @@ double enclosed(const mesh::Prepared& p) {
   return sum;
 }
 
+/// Whether the models look opposite ways: closed ones by what they enclose, open
+/// ones by their normals where they run along each other.
+bool look_apart(const cut::Model& a, const cut::Model& b) {
+  constexpr int kSamples = 20000;
+  const double volumes = enclosed(a.prepared) * enclosed(b.prepared);
+  if (volumes != 0) return volumes < 0;
+  const Mesh &of_a = a.prepared.mesh, &of_b = b.prepared.mesh;
+  const double reach = 0.1 * std::min(cut::rms_size(of_a), cut::rms_size(of_b));
+  const spatial::FaceTree tree(of_b);
+  double balance = 0, weights = 0;
+  for (int f = 0; f < of_a.face_count(); f += 1 + of_a.face_count() / kSamples) {
+    const spatial::FaceTree::Hit hit = tree.nearest(of_a.center(f), reach);
+    if (hit.face < 0) continue;
+    const double weight = of_a.area(f) * (1 - hit.distance / reach);
+    weights += weight, balance += weight * of_a.normal(f).dot(of_b.normal(hit.face));
+  }
+  return balance < -0.2 * weights;
+}
+
 }  // namespace
 
 ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const ComposeOptions& options,
@@ -187,7 +208,7 @@ ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const Co
              b = cut::make_model(part_b, part_b.name.empty() ? "model B" : part_b.name);
   log_notes(a, "_A", progress), log_notes(b, "_B", progress);
   const Box volume = cut::transition_volume(a, b, options.volume);
-  const bool turned = enclosed(a.prepared) * enclosed(b.prepared) < 0;
+  const bool turned = look_apart(a, b);
   if (turned) mesh::flip_orientation(b.prepared.mesh);
 
   ComposeResult result = options.cut == cut::Cut::Thesis

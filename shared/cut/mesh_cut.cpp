@@ -5,13 +5,8 @@
 #include <chrono>
 #include <memory>
 #include <unordered_map>
-#include <unordered_set>
 
-#include "parts/base/disjoint_sets.h"
 #include "parts/base/error.h"
-#include "parts/cut/seam_values.h"
-#include "parts/mesh/edges.h"
-#include "parts/mesh/loops.h"
 
 namespace parts::cut {
 namespace {
@@ -35,6 +30,7 @@ class MeshCutter {
         tree_{spatial::FaceTree(mesh(0)), spatial::FaceTree(mesh(1))},
         curve_(find_crossings(mesh(0), tree_[0], mesh(1), tree_[1])) {
     problem_.scale = std::min(rms_size(mesh(0)), rms_size(mesh(1)));
+    if (!(scale() > 0)) throw UserError("A model has no area; choose layers that hold surfaces.");
     for (int x : {0, 1}) {
       const std::vector<char>& keep = model_[x]->keep;
       marks_[x].assign(mesh(x).faces.size(), 0);
@@ -70,9 +66,12 @@ class MeshCutter {
 
   /// @throws UserError  there is no cut
   void cut_coarsely() {
-    std::vector<char> near[2];
-    for (int x : {0, 1}) near[x] = faces_near_other(x);
-    prepare(marks_, near, kCoarseEdge);
+    std::vector<char> open[2];
+    for (int x : {0, 1})
+      for (Territory mark : marks_[x]) open[x].push_back(!mark);
+    prepare(marks_, open, kCoarseEdge, [&](int x, const Vec3& p, double distance) {
+      return tree_[1 - x].nearest(p, kZone * scale() + distance).face >= 0;
+    });
     labels_ = choose_labels(problem_, kCoarseReach * scale(), 1, threads_);
     if (labels_.found) return;
     if (!labels_.possible)
@@ -87,13 +86,16 @@ class MeshCutter {
   void cut_finely() {
     std::vector<Territory> forced[2];
     std::vector<char> open[2];
-    lock_far_faces(forced, open);
+    const Zone zone = seam_zone();
+    lock_far_faces(zone, forced, open);
     MeshProblem coarse = std::move(problem_);
     MeshLabels labels = std::move(labels_);
     std::vector<SplitPoint> points[2] = {std::move(points_[0]), std::move(points_[1])};
     problem_ = MeshProblem();
     problem_.scale = coarse.scale;
-    prepare(forced, open, kFineEdge);
+    prepare(forced, open, kFineEdge, [&](int, const Vec3& p, double distance) {
+      return zone.tree.nearest(p, zone.radius + distance).face >= 0;
+    });
     labels_ = choose_labels(problem_, std::max(kCoarseReach * scale(), labels.reach / 2), 0, threads_);
     if (labels_.found) return;
     problem_ = std::move(coarse), labels_ = std::move(labels);
@@ -137,11 +139,13 @@ class MeshCutter {
     const SeamValues values = smooth_values(*model_[0], *model_[1], problem_, labels_, curve_, kFineEdge * scale());
     MeshCut cut;
     cut.edge = values.edge, cut.gap = values.gap;
-    for (int x : {0, 1}) cut.border[x] = smooth_border(x, values), cut.loops[x] = label_loops(x);
+    for (int x : {0, 1}) cut.border[x] = smooth_border(labelled(x), values), cut.loops[x] = count_loops(labelled(x));
     return cut;
   }
 
-  MeshBorder raw_border(int x) const;
+  LabelledModel labelled(int x) const {
+    return {mesh(x), x, points_[x], still_[x], curve_, problem_.side[x], labels_.label[x]};
+  }
 
   void report(CutReport& r) const {
     r.scale = scale(), r.reach = labels_.reach;
@@ -153,16 +157,6 @@ class MeshCutter {
   const Mesh& mesh(int x) const { return model_[x]->prepared.mesh; }
   double scale() const { return problem_.scale; }
 
-  std::vector<char> faces_near_other(int x) const {
-    std::vector<char> near(mesh(x).faces.size(), 0);
-    for (int f = 0; f < mesh(x).face_count(); ++f) {
-      const double longest = longest_edge(x, f);
-      near[f] = !marks_[x][f] && longest > kCoarseEdge * scale() &&
-                tree_[1 - x].nearest(mesh(x).center(f), kZone * scale() + 0.6 * longest).face >= 0;
-    }
-    return near;
-  }
-
   double longest_edge(int x, int f) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
@@ -171,10 +165,14 @@ class MeshCutter {
   }
 
   /// Makes the work meshes: the models split along the curve, the flagged faces down to an edge.
-  void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge) {
+  /// @param near  of A's (0) or B's surface: whether points are wanted within a distance of a place
+  void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge,
+               const std::function<bool(int, const Vec3&, double)>& near) {
     for (int x : {0, 1}) {
       points_[x] = split_points(curve_, mesh(x), x == 0);
-      add_even_points(mesh(x), split[x], still_[x], edge * scale(), points_[x]);
+      add_even_points(
+          mesh(x), split[x], still_[x], edge * scale(),
+          [&](const Vec3& p, double distance) { return near(x, p, distance); }, points_[x]);
       std::vector<SplitSegment> segments;
       for (const CrossingSegment& s : curve_.segments) segments.push_back({x ? s.face_b : s.face_a, s.ends});
       problem_.side[x] = make_work_mesh(*model_[x], volume_, forced[x], points_[x], segments);
@@ -235,8 +233,12 @@ class MeshCutter {
     return m.closed[m.component[face]] && tree_[x].winding(p, (normal + aslant).normalized(), 1e-5 * scale()) != 0;
   }
 
-  /// Faces far from the seam keep their label; the others are open again.
-  void lock_far_faces(std::vector<Territory> (&forced)[2], std::vector<char> (&open)[2]) const {
+  /// The surroundings of the seam found.
+  struct Zone {
+    spatial::FaceTree tree;  ///< of its edges
+    double radius;           ///< world units
+  };
+  Zone seam_zone() const {
     Mesh seam;  // its edges, as faces without area
     double edges = 0;
     long count = 0;
@@ -251,8 +253,12 @@ class MeshCutter {
           edges += std::min(longest_edge(x, w.source[w.edge_faces[k]]), kCoarseEdge * scale());
       }
     }
-    const spatial::FaceTree tree(seam);
-    const double zone = std::max({kZone * scale(), 1.5 * labels_.reach, 2 * edges / double(std::max(1L, count))});
+    return {spatial::FaceTree(seam),
+            std::max({kZone * scale(), 1.5 * labels_.reach, 2 * edges / double(std::max(1L, count))})};
+  }
+
+  /// Faces far from the seam keep their label; the others are open again.
+  void lock_far_faces(const Zone& zone, std::vector<Territory> (&forced)[2], std::vector<char> (&open)[2]) const {
     for (int x : {0, 1}) {
       const WorkMesh& w = problem_.side[x];
       forced[x] = marks_[x];
@@ -264,102 +270,10 @@ class MeshCutter {
         const Vec3 center = mesh(x).center(f);
         double radius = 0;
         for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh(x).corner(f, k) - center).norm());
-        open[x][f] = tree.nearest(center, zone + radius).face >= 0;
+        open[x][f] = zone.tree.nearest(center, zone.radius + radius).face >= 0;
         if (!open[x][f]) forced[x][f] = label[f];
       }
     }
-  }
-
-  /// The points on and in the model's flagged faces.
-  std::vector<char> points_of(int x, const std::vector<char>& faces) const {
-    std::unordered_set<std::uint64_t> edges;
-    for (int f = 0; f < mesh(x).face_count(); ++f)
-      for (int k = 0; faces[f] && k < 3; ++k)
-        edges.insert(edge_key(mesh(x).faces[f][k], mesh(x).faces[f][(k + 1) % 3]));
-    std::vector<char> used(points_[x].size(), 0);
-    for (std::size_t p = 0; p < used.size(); ++p) {
-      const SplitPoint& point = points_[x][p];
-      used[p] = point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0;
-    }
-    return used;
-  }
-
-  /// The label of the work mesh's part of a face that is nearest to a point.
-  class LabelOfPart {
-   public:
-    LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces)
-        : w_(w), label_(label) {
-      for (int f = 0; f < w.mesh.face_count(); ++f)
-        if (faces[w.source[f]]) parts_[w.source[f]].push_back(f);
-    }
-    Territory operator()(int source, const Vec3& p) const {
-      double least = 1e300;
-      Territory found = 0;
-      for (int f : parts_.at(source)) {
-        const Vec3 q =
-            spatial::nearest_on_triangle(p, w_.mesh.corner(f, 0), w_.mesh.corner(f, 1), w_.mesh.corner(f, 2));
-        if (const double d = (q - p).squaredNorm(); d < least) least = d, found = label_[f];
-      }
-      return found;
-    }
-
-   private:
-    const WorkMesh& w_;
-    const std::vector<Territory>& label_;
-    std::unordered_map<int, std::vector<int>> parts_;
-  };
-
-  MeshBorder smooth_border(int x, const SeamValues& values) const {
-    const WorkMesh& w = problem_.side[x];
-    const double sign = x ? -1 : 1;
-    std::vector<char> passed(mesh(x).faces.size(), 0);  // by the border
-    {
-      std::vector<char> signs(mesh(x).faces.size(), 0);
-      for (int f = 0; f < w.mesh.face_count(); ++f)
-        for (int v : w.mesh.faces[f]) signs[w.source[f]] |= values.value[x][v] > 0 ? 1 : values.value[x][v] < 0 ? 2 : 4;
-      for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = signs[f] >= 3;
-    }
-    std::vector<char> used = points_of(x, passed);
-    std::fill_n(used.begin(), curve_.points.size(), 0);
-    std::vector<SplitSegment> segments;
-    for (std::size_t s = 0; s < curve_.segments.size(); ++s) {
-      if (!values.pinned[s]) continue;
-      const CrossingSegment& segment = curve_.segments[s];
-      segments.push_back({x ? segment.face_b : segment.face_a, segment.ends});
-      for (int end : segment.ends) used[end] = 1;
-    }
-    MeshBorder border;
-    border.split = split_faces(mesh(x), points_[x], used, segments);
-    const SplitMesh& split = border.split;
-    border.value.assign(split.mesh.vertices.size(), 0);
-    for (int v = 0; v < mesh(x).vertex_count(); ++v) border.value[v] = sign * values.value[x][v];
-    for (std::size_t p = 0; p < used.size(); ++p)
-      if (used[p]) border.value[split.vertex_of[p]] = sign * values.value[x][w.vertex_of[p]];
-    const LabelOfPart label(w, labels_.label[x], passed);
-    border.keep_level.assign(split.mesh.faces.size(), 0);
-    for (int f = 0; f < split.mesh.face_count(); ++f) {
-      const Triangle& t = split.mesh.faces[f];
-      if (border.value[t[0]] == 0 && border.value[t[1]] == 0 && border.value[t[2]] == 0)
-        border.keep_level[f] = label(split.source[f], split.mesh.center(f)) == (x ? kOfB : kOfA);
-    }
-    return border;
-  }
-
-  /// How many borders the labels give a model, beside its own.
-  int label_loops(int x) const {
-    const WorkMesh& w = problem_.side[x];
-    std::vector<std::array<int, 2>> border;
-    for (const WorkMesh::Edge& e : w.edges) {
-      int kept = 0, face = -1;
-      for (int k = e.first_face; k < e.end_face; ++k)
-        if (labels_.label[x][w.edge_faces[k]] == (x ? kOfB : kOfA)) ++kept, face = w.edge_faces[k];
-      if (kept != 1 || e.end_face - e.first_face < 2) continue;
-      const Triangle& t = w.mesh.faces[face];
-      for (int k = 0; k < 3; ++k)
-        if (std::min(t[k], t[(k + 1) % 3]) == e.low && std::max(t[k], t[(k + 1) % 3]) == e.high)
-          border.push_back({t[k], t[(k + 1) % 3]});
-    }
-    return int(mesh::trace_loops(border).size());
   }
 
   const Model* model_[2];
@@ -373,32 +287,6 @@ class MeshCutter {
   MeshProblem problem_;
   MeshLabels labels_;
 };
-
-MeshBorder MeshCutter::raw_border(int x) const {
-  const WorkMesh& w = problem_.side[x];
-  const Territory own = x ? kOfB : kOfA;
-  std::vector<char> kept(mesh(x).faces.size(), 0), dropped = kept, passed = kept;
-  for (int f = 0; f < w.mesh.face_count(); ++f) (labels_.label[x][f] == own ? kept : dropped)[w.source[f]] = 1;
-  for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
-  std::vector<char> used = points_of(x, passed);
-  for (std::size_t p = 0; p < used.size(); ++p) {  // what must stay whole has edges in common with what is passed
-    const SplitPoint& point = points_[x][p];
-    if (point.face < 0 && still_[x][point.edge[0]] && still_[x][point.edge[1]]) used[p] = 0;
-  }
-  std::vector<SplitSegment> segments;
-  for (const CrossingSegment& s : curve_.segments)
-    if (const int f = x ? s.face_b : s.face_a; passed[f] && used[s.ends[0]] && used[s.ends[1]])
-      segments.push_back({f, s.ends});
-  MeshBorder border;
-  border.split = split_faces(mesh(x), points_[x], used, segments);
-  border.value.assign(border.split.mesh.vertices.size(), 0);
-  const LabelOfPart label(w, labels_.label[x], passed);
-  for (int f = 0; f < border.split.mesh.face_count(); ++f) {
-    const int source = border.split.source[f];
-    border.keep_level.push_back(passed[source] ? label(source, border.split.mesh.center(f)) == own : kept[source]);
-  }
-  return border;
-}
 
 }  // namespace
 
@@ -415,7 +303,7 @@ MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, int thread
   progress.at(0.8);
   cutter->report(report);
   MeshCut cut = cutter->borders();
-  cut.raw_border = [cutter](int side) { return cutter->raw_border(side); };
+  cut.raw_border = [cutter](int side) { return raw_border(cutter->labelled(side)); };
   report.cut_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return cut;
 }

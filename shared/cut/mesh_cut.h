@@ -6,17 +6,9 @@
 
 #include "parts/base/progress.h"
 #include "parts/cut/cut.h"
-#include "parts/cut/mesh_labels.h"
+#include "parts/cut/mesh_borders.h"
 
 namespace parts::cut {
-
-/// Where one model ends: it is kept where the value is positive. Faces that the
-/// border does not pass are the model's own, bit for bit.
-struct MeshBorder {
-  SplitMesh split;               ///< the model, split where the border passes
-  std::vector<double> value;     ///< per vertex of the split mesh
-  std::vector<char> keep_level;  ///< per face: whether it is kept where all its values are zero
-};
 
 /// A minimal cut on the two meshes themselves (thesis 6.1).
 struct MeshCut {

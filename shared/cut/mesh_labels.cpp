@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "parts/base/disjoint_sets.h"
 #include "parts/cut/max_flow.h"
@@ -79,7 +80,9 @@ double LabelGraph::cost(const WorkMesh& mine, const WorkMesh& other, const WorkM
   const WorkMesh::Near &low = mine.vertex_near[e.low], &high = mine.vertex_near[e.high];
   if (!(low.distance < reach_) || !(high.distance < reach_)) return -1;
   if (low.opposite || high.opposite) return kOpposite * length * p_.scale;
-  const double turn = mine.turn_to(other, e), share = 0.5 + 0.5 * std::clamp(2 * turn, 0.0, 1.0);
+  // Beside the other's own border it is not cut at all: that is no free exit.
+  const bool alone = low.beside || high.beside;
+  const double turn = mine.turn_to(other, e), share = alone ? 1 : 0.5 + 0.5 * std::clamp(2 * turn, 0.0, 1.0);
   return share * length * (0.5 * (low.distance + high.distance) + lambda * (1 + turn));
 }
 
@@ -154,6 +157,19 @@ bool any_seam(const MeshProblem& p, const MeshLabels& labels) {
   return false;
 }
 
+/// Counts what a model's own border pays for as a part of the seam, where the other is cut along it.
+void take_own_parts(Borders& mine, const Borders& other, double reach) {
+  Mesh seam;  // as faces without area
+  for (const BorderEdge& e : other.cut) {
+    const int v = seam.vertex_count();
+    seam.vertices.push_back(e.from), seam.vertices.push_back(e.to);
+    seam.faces.push_back({v, v + 1, v + 1});
+  }
+  const spatial::FaceTree tree(seam);
+  for (const BorderEdge& e : std::exchange(mine.own, {}))
+    (tree.nearest(0.5 * (e.from + e.to), reach).face >= 0 ? mine.cut : mine.own).push_back(e);
+}
+
 /// The borders that labels give a model: those of the faces that it keeps.
 Borders label_borders(const WorkMesh& w, const std::vector<Territory>& label, Territory own) {
   Borders borders;
@@ -189,9 +205,10 @@ double doubled_area(const MeshProblem& p, const MeshLabels& labels) {
 /// Fills objective, doubled and broken. Not the flow decides, as that pays for one-sided
 /// seams by halves, but the seam that the labels make.
 void judge(const MeshProblem& p, MeshLabels& labels) {
-  labels.objective = score_seam(label_borders(p.side[0], labels.label[0], kOfA),
-                                label_borders(p.side[1], labels.label[1], kOfB), p.scale)
-                         .total();
+  Borders a = label_borders(p.side[0], labels.label[0], kOfA), b = label_borders(p.side[1], labels.label[1], kOfB);
+  const Borders cut_of_a{a.cut, {}};
+  take_own_parts(a, b, SeamScore::kReach * p.scale), take_own_parts(b, cut_of_a, SeamScore::kReach * p.scale);
+  labels.objective = score_seam(a, b, p.scale).total();
   labels.doubled = kCoupling * doubled_area(p, labels) / (SeamScore::kLambda * p.scale * p.scale);
   labels.objective += labels.doubled;
   labels.broken = 0;

@@ -58,7 +58,11 @@ double rms_size(const Mesh& mesh) {
   }
   if (!(area > 0)) return 0;
   centroid /= area;
-  for (int f = 0; f < mesh.face_count(); ++f) sum += mesh.area(f) * (mesh.center(f) - centroid).squaredNorm();
+  for (int f = 0; f < mesh.face_count(); ++f) {  // the integral over the face, in closed form
+    double moment = 9 * (mesh.center(f) - centroid).squaredNorm();
+    for (int k = 0; k < 3; ++k) moment += (mesh.corner(f, k) - centroid).squaredNorm();
+    sum += mesh.area(f) * moment / 12;
+  }
   return std::sqrt(sum / area);
 }
 

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "parts/cut/face_triangulation.h"
 #include "parts/mesh/attributes.h"
@@ -160,42 +161,69 @@ SplitMesh split_faces(const Mesh& mesh, const std::vector<SplitPoint>& points, c
   return std::move(s.out);
 }
 
-void add_even_points(const Mesh& mesh, const std::vector<char>& faces, const std::vector<char>& still, double longest,
-                     std::vector<SplitPoint>& points) {
-  constexpr int kMost = 400;  // on an edge
-  const auto parts = [&](double length) { return int(std::min<double>(kMost, std::ceil(length / longest))); };
-  std::unordered_set<std::uint64_t> done;
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    if (!faces[f]) continue;
-    const Triangle& t = mesh.faces[f];
-    int base = 0;
-    double base_length = 0;
-    for (int k = 0; k < 3; ++k) {
-      const int low = std::min(t[k], t[(k + 1) % 3]), high = std::max(t[k], t[(k + 1) % 3]);
-      const Vec3 &p = mesh.vertices[low], &q = mesh.vertices[high];
-      const double length = (q - p).norm();
-      if (length > base_length) base = k, base_length = length;
-      const int n = parts(length);
-      if (n < 2 || (still[low] && still[high]) || !done.insert(edge_key(low, high)).second) continue;
-      for (int i = 1; i < n; ++i) {
-        const double share = double(i) / n;
-        points.push_back(SplitPoint::on_edge(p + share * (q - p), low, high, share));
-      }
-    }
-    if (!(base_length > 0)) continue;
-    // Rows along the longest edge, so that a needle gets none.
-    const int rows = parts(2 * mesh.area(f) / base_length);
-    for (int r = 1; r < rows; ++r) {
-      const double up = double(r) / rows;
-      const int n = parts((1 - up) * base_length);
-      for (int i = 1; i < n; ++i) {
-        Vec3 l;
-        l[(base + 2) % 3] = up, l[(base + 1) % 3] = (1 - up) * i / n, l[base] = (1 - up) * (n - i) / n;
-        points.push_back(
-            SplitPoint::in_face(l[0] * mesh.corner(f, 0) + l[1] * mesh.corner(f, 1) + l[2] * mesh.corner(f, 2), f, l));
-      }
+namespace {
+
+/// Bisects one face until its parts are small.
+class Bisector {
+ public:
+  Bisector(const Mesh& mesh, int face, std::vector<SplitPoint>& points,
+           std::set<std::tuple<int, int, double>>& on_edges)
+      : mesh_(mesh), face_(face), points_(points), on_edges_(on_edges) {}
+
+  void run(const std::vector<char>& still, double longest, const std::function<bool(const Vec3&, double)>& near) {
+    std::vector<std::array<Vec3, 3>> open{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
+    while (!open.empty()) {
+      const std::array<Vec3, 3> part = open.back();
+      open.pop_back();
+      int k = 0;
+      double length = 0;
+      for (int j = 0; j < 3; ++j)
+        if (const double l = (place(part[j]) - place(part[(j + 1) % 3])).norm(); l > length) length = l, k = j;
+      const Vec3 &from = part[k], &to = part[(k + 1) % 3], middle = 0.5 * (from + to);
+      if (!(length > longest) || !near(place(middle), 0.5 * length)) continue;
+      if (!add(from, to, middle, still)) continue;
+      open.push_back({from, middle, part[(k + 2) % 3]});
+      open.push_back({middle, to, part[(k + 2) % 3]});
     }
   }
+
+ private:
+  Vec3 place(const Vec3& l) const {
+    return l[0] * mesh_.corner(face_, 0) + l[1] * mesh_.corner(face_, 1) + l[2] * mesh_.corner(face_, 2);
+  }
+  /// @return false: on an edge that stays whole
+  bool add(const Vec3& from, const Vec3& to, const Vec3& middle, const std::vector<char>& still) {
+    for (int k = 0; k < 3; ++k) {
+      if (from[k] != 0 || to[k] != 0) continue;
+      int i = (k + 1) % 3, j = (k + 2) % 3;
+      if (mesh_.faces[face_][i] > mesh_.faces[face_][j]) std::swap(i, j);
+      const int low = mesh_.faces[face_][i], high = mesh_.faces[face_][j];
+      if (still[low] && still[high]) return false;
+      if (on_edges_.insert({low, high, middle[j]}).second)
+        points_.push_back(SplitPoint::on_edge(
+            mesh_.vertices[low] + middle[j] * (mesh_.vertices[high] - mesh_.vertices[low]), low, high, middle[j]));
+      return true;
+    }
+    if (inside_.insert({middle[1], middle[2]}).second)
+      points_.push_back(SplitPoint::in_face(place(middle), face_, middle));
+    return true;
+  }
+
+  const Mesh& mesh_;
+  const int face_;
+  std::vector<SplitPoint>& points_;
+  std::set<std::tuple<int, int, double>>& on_edges_;
+  std::set<std::array<double, 2>> inside_;
+};
+
+}  // namespace
+
+void add_even_points(const Mesh& mesh, const std::vector<char>& faces, const std::vector<char>& still, double longest,
+                     const std::function<bool(const Vec3& place, double distance)>& near,
+                     std::vector<SplitPoint>& points) {
+  std::set<std::tuple<int, int, double>> on_edges;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (faces[f]) Bisector(mesh, f, points, on_edges).run(still, longest, near);
 }
 
 }  // namespace parts::cut

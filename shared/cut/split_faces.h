@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "parts/mesh/mesh.h"
@@ -41,10 +42,12 @@ struct SplitMesh {
 SplitMesh split_faces(const Mesh& mesh, const std::vector<SplitPoint>& points, const std::vector<char>& used,
                       const std::vector<SplitSegment>& segments);
 
-/// Adds points to where edges of the flagged faces are longer than `longest`
-/// (world units): evenly on such edges, and in rows in the faces.
+/// Adds points to the flagged faces, on their edges and in them, where they are
+/// larger than `longest` (world units), by bisecting longest edges.
 /// @param still  per vertex: edges between two of these stay whole
+/// @param near   whether points are wanted within a distance of a place
 void add_even_points(const Mesh& mesh, const std::vector<char>& faces, const std::vector<char>& still, double longest,
+                     const std::function<bool(const Vec3& place, double distance)>& near,
                      std::vector<SplitPoint>& points);
 
 }  // namespace parts::cut

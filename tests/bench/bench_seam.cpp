@@ -58,6 +58,50 @@ Child measured(const Scene& scene, cut::Cut cut, const std::string& out) {
       600);
 }
 
+/// Rest, bent; pieces, loops, what is wrong, crossings; seconds.
+std::vector<double> bent(const Bend& bend, cut::Cut cut, const std::string& out) {
+  compose::ComposeOptions options;
+  options.cut = cut;
+  Progress silent;
+  const Stopwatch watch;
+  compose::ComposeResult r =
+      std::move(compose::deform(bend.mesh, bend.fixed, bend.moving, bend.pose, 1, options, silent).front());
+  const double seconds = watch.cpu();
+  const mesh::MeshCheck check = mesh::check(r.composed);
+  if (!out.empty()) {
+    r.composed.face_quality.assign(r.face_from_b.begin(), r.face_from_b.end());
+    io::write_mesh(r.composed, out);
+  }
+  return {double(check.components),
+          double(check.boundary_loops),
+          double(check.nonmanifold_edges + check.nonmanifold_vertices + check.inconsistent_edges),
+          double(mesh::self_intersections(r.composed, 0, 1)),
+          double(r.composed.face_count()),
+          seconds};
+}
+
+void print_bends(const std::string& out, const std::string& only) {
+  Table table("Bends", {"Bend", "Cut", "Pieces (input)", "Border loops (input)", "Non-manifold",
+                        "Crossing pairs (input)", "Faces (input)", "Processor s"});
+  for (const Bend& bend : bends()) {
+    if (bend.name.find(only) == std::string::npos) continue;
+    const mesh::MeshCheck was = mesh::check(bend.mesh);
+    const auto beside = [](double result, double input) { return count(result) + " (" + count(input) + ")"; };
+    for (const cut::Cut cut : {cut::Cut::Mesh, cut::Cut::Thesis}) {
+      const char* name = cut == cut::Cut::Mesh ? "Mesh" : "Thesis";
+      const Child c =
+          in_child([&] { return bent(bend, cut, out.empty() ? "" : out + "/" + file_name(bend.name, name)); }, 600);
+      if (!c.ended) {
+        table.row({bend.name, name, "failed"});
+        continue;
+      }
+      table.row({bend.name, name, beside(c.figures[0], was.components), beside(c.figures[1], was.boundary_loops),
+                 count(c.figures[2]), beside(c.figures[3], double(mesh::self_intersections(bend.mesh))),
+                 beside(c.figures[4], bend.mesh.face_count()), text(c.figures[5])});
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -103,4 +147,5 @@ int main(int argc, char** argv) {
       table.note("Mesh's J over Thesis', geometric mean: " + text(std::exp(logs / both)) + "; at most Thesis' on " +
                  std::to_string(better) + " of " + std::to_string(both) + " scenes.");
   }
+  print_bends(out, only);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/scenes.h"
+#include "parts/compose/deform.h"
 
 namespace parts::bench {
 
@@ -12,10 +13,16 @@ namespace parts::bench {
 /// and of shapes of our own: those of the demos, and others.
 std::vector<Scene> seam_scenes();
 
+/// A model and how a part of it is bent.
+struct Bend {
+  std::string name;
+  Mesh mesh;
+  std::vector<char> fixed, moving;
+  compose::RigidPose pose;
+};
+std::vector<Bend> bends();
+
 /// A mesh of libcgal-demo, unpacked where it is not yet.
 Mesh cgal_mesh(const std::string& file);
-
-/// The faces with a corner in a box.
-std::vector<char> faces_in(const Mesh& mesh, const Box& box);
 
 }  // namespace parts::bench

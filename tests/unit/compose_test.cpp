@@ -92,10 +92,11 @@ TEST(Compose, ResolutionIsTheUsersOrFromTheMeshes) {
     EXPECT_NEAR(r.report.voxel_size, 3. / resolution, 1e-9);
     expect_closed_manifold(r.composed, "resolution " + std::to_string(resolution));
   }
-  options.resolution = 0;
-  const double coarse = compose_quietly(a, b, options).report.voxel_size;
-  const auto [fine_a, fine_b] = two_spheres(5);
-  EXPECT_LT(compose_quietly(fine_a, fine_b, options).report.voxel_size, coarse);
+  const auto natural = [](const std::array<cut::Part, 2>& parts) {
+    const cut::Model of_a = cut::make_model(parts[0], "A"), of_b = cut::make_model(parts[1], "B");
+    return cut::natural_resolution(of_a, of_b, cut::transition_volume(of_a, of_b, Box()));
+  };
+  EXPECT_GT(natural(two_spheres(5)), natural({a, b}));
 }
 
 TEST(Compose, NothingIsCutOutsideTheVolume) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/compose/deform.h"
 
+#include "parts/mesh/attributes.h"
 #include "unit/compose_support.h"
 
 namespace parts::test {
@@ -88,6 +89,105 @@ TEST(Deform, TheZeroPoseGivesTheModelBack) {
   const Mesh m = bend(a, {})[0].composed;
   expect_closed_manifold(m, "zero pose");
   EXPECT_NEAR(volume_of(m), volume_of(a.mesh), 1e-2 * volume_of(a.mesh));
+}
+
+TEST(Deform, ThirtyBendsOfAHand) {
+  // Five fingers, each bent at its middle at six angles toward the palm.
+  std::vector<Limb> limbs{{{{0, -0.5, 0}, 0.35}, {{0, 0.1, 0}, 0.4}}};
+  std::vector<Vec3> base, tip;
+  for (int k = 0; k < 5; ++k) {
+    const double spread = 0.45 * (k - 2);
+    base.push_back({0.3 * (k - 2), 0.3, 0});
+    tip.push_back(base.back() + 1.1 * Vec3(std::sin(spread), std::cos(spread), 0));
+    limbs.push_back({{base.back(), 0.14}, {tip.back(), 0.1}});
+  }
+  const Mesh hand = blend(limbs, 0.05, 72);
+  ASSERT_EQ(mesh::self_intersections(hand), 0);
+  Arm a;
+  a.mesh = hand;
+  a.fixed = faces_where(hand, [](const Vec3& c) { return c.y() < -0.3; });
+  for (int k = 0; k < 5; ++k) {
+    a.moving = faces_where(hand, [&](const Vec3& c) { return (c - tip[k]).norm() < 0.2; });
+    for (double angle = 15; angle <= 90; angle += 15) {
+      const std::string what = "finger " + std::to_string(k) + " by " + std::to_string(angle);
+      compose::RigidPose pose;
+      pose.pivot = 0.5 * (base[k] + tip[k]);
+      pose.axis = (tip[k] - base[k]).cross(Vec3::UnitZ());
+      pose.angle = angle;
+      const compose::ComposeResult r = bend(a, pose)[0];
+      // One surface, the input's own: no limb comes twice, none is lost.
+      EXPECT_EQ(r.composed.faces, hand.faces) << what;
+      EXPECT_EQ(mesh::self_intersections(r.composed, 10), 0) << what;
+      const Eigen::AngleAxisd turn(angle * M_PI / 180, pose.axis.normalized());
+      long moved = 0, rest = 0;
+      for (int v = 0; v < hand.vertex_count(); ++v) {
+        const Vec3& p = hand.vertices[v];
+        moved += (r.composed.vertices[v] - (pose.pivot + turn * (p - pose.pivot))).norm() < 1e-9;
+        rest += r.composed.vertices[v] == p;
+        // No other finger follows.
+        for (int other = 0; other < 5; ++other)
+          if (other != k && (p - tip[other]).norm() < 0.2) {
+            EXPECT_EQ(r.composed.vertices[v], p) << what;
+          }
+      }
+      for (int f = 0; f < hand.face_count(); ++f)
+        for (int c : hand.faces[f]) {
+          const Vec3 &was = hand.vertices[c], &is = r.composed.vertices[c];
+          if (a.fixed[f]) {
+            EXPECT_EQ(is, was) << what;
+          }
+          if (a.moving[f]) {
+            EXPECT_LT((is - (pose.pivot + turn * (was - pose.pivot))).norm(), 1e-9) << what;
+          }
+        }
+      EXPECT_GT(moved, 20) << what;
+      EXPECT_GT(rest, hand.vertex_count() * 3 / 4) << what;
+    }
+  }
+}
+
+TEST(Deform, BordersAndSeamsOfTheTextureStay) {
+  // An arm open at the shoulder, its vertices doubled along a line as by a texture's seam.
+  Arm a = arm();
+  std::vector<char> flags = faces_where(a.mesh, [](const Vec3& c) { return c.x() > -1.9; });
+  a.mesh = mesh::take_faces(a.mesh, flags);
+  const int doubled = a.mesh.vertex_count();
+  a.mesh.vertices.insert(a.mesh.vertices.end(), a.mesh.vertices.begin(), a.mesh.vertices.end());
+  for (int f = 0; f < a.mesh.face_count(); ++f)
+    if (a.mesh.center(f).z() > 0)
+      for (int& v : a.mesh.faces[f]) v += doubled;
+  a.fixed = faces_where(a.mesh, [](const Vec3& c) { return c.x() < -1; });
+  a.moving = faces_where(a.mesh, [](const Vec3& c) { return c.x() > 1; });
+  compose::RigidPose pose;
+  pose.angle = 45;
+  const Mesh m = bend(a, pose)[0].composed;
+  EXPECT_EQ(m.faces, a.mesh.faces);
+  for (int v = 0; v < doubled; ++v) EXPECT_EQ(m.vertices[v], m.vertices[v + doubled]);
+  EXPECT_EQ(mesh::check(m).boundary_loops, mesh::check(a.mesh).boundary_loops);
+}
+
+TEST(Deform, ALooseEyeFollowsItsHead) {
+  Arm a = arm();
+  const int faces = a.mesh.face_count(), vertices = a.mesh.vertex_count();
+  a.mesh = together({a.mesh, sphere({1.5, 0, 0.2}, 0.1, 1), sphere({-1.5, 0, 0.2}, 0.1, 1)});
+  a.fixed.resize(a.mesh.faces.size(), 0), a.moving.resize(a.mesh.faces.size(), 0);
+  compose::RigidPose pose;
+  pose.angle = 90;
+  const Mesh m = bend(a, pose)[0].composed;
+  EXPECT_EQ(m.faces, a.mesh.faces);
+  const int each = (a.mesh.vertex_count() - vertices) / 2;
+  for (int v = vertices; v < vertices + each; ++v) {
+    const Vec3& p = a.mesh.vertices[v];
+    EXPECT_LT((m.vertices[v] - Vec3(-p.y(), p.x(), p.z())).norm(), 1e-9);
+    EXPECT_EQ(m.vertices[v + each], a.mesh.vertices[v + each]);
+  }
+  EXPECT_GT(faces, 0);
+}
+
+TEST(Deform, AFaceCannotBothStayAndMove) {
+  Arm a = arm();
+  a.fixed = a.moving;
+  EXPECT_NE(user_error([&] { bend(a, {}); }).find("both to stay and to move"), std::string::npos);
 }
 
 TEST(Deform, PosesThatAreNone) {
