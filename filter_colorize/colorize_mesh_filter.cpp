@@ -160,7 +160,6 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
         "The colours of what no view sees could not be fitted to those around; they are the most similar model's.");
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!colors.trusted()) log_value(progress, "warning", doubt(colors));
-  Outcome outcome;
   outcome.layers.push_back({layer_name(colors), std::move(mesh), true, {}, {{inputs.layer("Mesh")}}});
   outcome.current = 0;
   outcome.hidden = {inputs.layer("Mesh")};

@@ -269,7 +269,6 @@ Outcome apply(const Inputs& inputs, Progress& progress) {
   log_value(progress, "faces", result.mesh.face_count());
   log_value(progress, "seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!r.trusted) log_value(progress, "warning", doubt(r.evidence));
-  Outcome outcome;
   outcome.layers.push_back({r.trusted ? "Reconstructed" : "Reconstructed (not trusted)", std::move(result.mesh), true,
                             r.camera, check_of_depth(options.back)});
   outcome.current = 0;

@@ -89,9 +89,9 @@ double border_distance(const Mesh& a, const Mesh& b) {
   const auto edges = [](const Mesh& m) {
     Mesh out;
     for (const auto& loop : mesh::boundary_loops(m, mesh::edge_map(m)))
-      for (std::size_t k = 0; k < loop.size(); ++k) {
+      for (int k = 0; k < loop.size(); ++k) {
         const int v = out.vertex_count();
-        out.vertices.push_back(m.vertices[loop[k]]), out.vertices.push_back(m.vertices[loop[(k + 1) % loop.size()]]);
+        out.vertices.push_back(m.vertices[loop.vertices[k]]), out.vertices.push_back(m.vertices[loop.next(k)]);
         out.faces.push_back({v, v + 1, v + 1});
       }
     return out;
