@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results beside their inputs, through meshlabserver: figures, warnings, AllowFlaws."""
 import lib
-import rasters
 import shapes
 from lib import run, template
 
@@ -26,15 +25,7 @@ class ResultCheck(lib.MeshCase):
         self.assertEqual(self.figures(result, "input"), [2, 0, 0, 0])
         self.assertFalse(result.warnings)
 
-    def crossed(self, **values):
-        """A depth map whose back comes before its front."""
-        folder = lib.work_folder()
-        front, back = rasters.sphere()
-        front[20:30, 20:30] += 100
-        return run([], [template("depth_to_mesh", Depth=rasters.save_tif(folder / "front.tif", front),
-                                 BackDepth=rasters.save_tif(folder / "back.tif", back), MaxJump=500, **values)])
-
-    def test_a_flawed_one_ends_in_a_warning(self):
+    def test_what_was_asked_for_is_no_flaw(self):
         result = run([trunk(), branch()], [template("compose", Stitch=False)])
         self.assertFalse(result.warnings, "open borders and two pieces are what was asked for")
         hole = shapes.merged(trunk(), shapes.sphere((0, 0, 3), 0.2))
@@ -45,11 +36,13 @@ class ResultCheck(lib.MeshCase):
         self.assertFalse(result.warnings, "one piece fewer than the inputs have")
 
     def test_without_allow_flaws_it_fails_and_changes_nothing(self):
-        allowed, refused = self.crossed(), self.crossed(AllowFlaws=False)
-        if not allowed.warnings:
-            self.skipTest("this depth is meshed without a flaw")
+        models = [trunk(), branch().scaled(0.2)]  # one inside the other: nothing joins them
+        allowed = run(models, [template("compose")])
         self.assertSucceeded(allowed)
-        self.assertFailed(refused, "AllowFlaws")
+        self.assertIn("2 pieces where 1 would do", allowed.warnings[-1])
+        self.assertEqual(allowed.logs[-1][-1][0], "warning", "the last line")
+        refused = run(models, [template("compose", AllowFlaws=False)])
+        self.assertFailed(refused, "2 pieces where 1 would do", "AllowFlaws")
         self.assertFalse((refused.folder / "out.ply").exists())
 
     def test_a_scan_in_utm_coordinates_is_refused_in_words(self):

@@ -206,7 +206,8 @@ def numbers():
         yield deform(name, None, {"sentence"}, **values)
     yield compose("resolution 1500 in 1.5 GB", None, FINE, Resolution=1500)._replace(memory=3 << 29)
     yield compose("keep number -1", None, {"sentence"}, KeepA=-1)
-    yield compose("a thousand iterations over everything", None, {"ok"}, True, SmoothIterations=1000, SmoothDistance=1e9)
+    yield compose("a thousand iterations over everything", None, {"ok", "flawed"}, True, SmoothIterations=1000,
+                  SmoothDistance=1e9)
     for name, values in (("negative iterations", dict(MaxIterations=-1)), ("overlap 0", dict(Overlap=0)),
                          ("overlap 2", dict(Overlap=2)), ("overlap NaN", dict(Overlap="nan")),
                          ("first guess number 9", dict(Coarse=9))):
