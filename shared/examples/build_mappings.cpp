@@ -158,15 +158,17 @@ io::MlpRaster store(const Example& e, const std::string& stem, Draft& draft, dou
 
 /// What the first example shows, as a mesh: MeshLab lists no rasters of a project without meshes.
 void add_surface(const Example& e, const std::string& stem, Draft& draft, io::MlpProject& project) {
+  render::DepthMesh surface;
   try {
     Progress silent;
-    render::DepthMesh surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
-    surface.mesh.textures = {stem + ".png"};
-    const std::string file = draft.place(stem + "_surface.ply");
-    io::add_mesh(draft.files(), surface.mesh, file);
-    project.meshes.push_back({project.rasters.back().label, file});
+    surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
   } catch (const UserError&) {  // too small to be a surface
+    return;
   }
+  surface.mesh.textures = {stem + ".png"};
+  const std::string file = draft.place(stem + "_surface.ply");
+  io::add_mesh(draft.files(), surface.mesh, file);
+  project.meshes.push_back({project.rasters.back().label, file});
 }
 
 /// The class's preset for the new database. What users set in the preset of an older one stays.
