@@ -53,8 +53,12 @@ class Draft {
   std::string place(const std::string& name) {
     const fs::path path = folder_ / name;
     std::error_code error;
-    const bool ours = older_.count(name) > 0;
-    if (fs::exists(path, error) && (!ours || is_input(path)))
+    const bool there = fs::exists(path, error);
+    if (there && older_.count(name) == 0) {  // another run may have put it there meanwhile
+      const FolderLock alone(folder_of(output_));
+      find_older();
+    }
+    if (there && (older_.count(name) == 0 || is_input(path)))
       throw UserError("The file \"" + path.string() +
                       "\" is not of an older database and would be replaced; move it, or give another output.");
     names_.insert(name);
