@@ -53,8 +53,12 @@ class Draft {
   std::string place(const std::string& name) {
     const fs::path path = folder_ / name;
     std::error_code error;
-    const bool ours = older_.count(name) > 0;
-    if (fs::exists(path, error) && (!ours || is_input(path)))
+    const bool there = fs::exists(path, error);
+    if (there && older_.count(name) == 0) {  // another run may have put it there meanwhile
+      const FolderLock alone(folder_of(output_));
+      find_older();
+    }
+    if (there && (older_.count(name) == 0 || is_input(path)))
       throw UserError("The file \"" + path.string() +
                       "\" is not of an older database and would be replaced; move it, or give another output.");
     names_.insert(name);
@@ -158,15 +162,17 @@ io::MlpRaster store(const Example& e, const std::string& stem, Draft& draft, dou
 
 /// What the first example shows, as a mesh: MeshLab lists no rasters of a project without meshes.
 void add_surface(const Example& e, const std::string& stem, Draft& draft, io::MlpProject& project) {
+  render::DepthMesh surface;
   try {
     Progress silent;
-    render::DepthMesh surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
-    surface.mesh.textures = {stem + ".png"};
-    const std::string file = draft.place(stem + "_surface.ply");
-    io::add_mesh(draft.files(), surface.mesh, file);
-    project.meshes.push_back({project.rasters.back().label, file});
+    surface = render::depth_to_mesh(e.depth, {}, e.camera, {}, silent);
   } catch (const UserError&) {  // too small to be a surface
+    return;
   }
+  surface.mesh.textures = {stem + ".png"};
+  const std::string file = draft.place(stem + "_surface.ply");
+  io::add_mesh(draft.files(), surface.mesh, file);
+  project.meshes.push_back({project.rasters.back().label, file});
 }
 
 /// The class's preset for the new database. What users set in the preset of an older one stays.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <cmath>
 #include <cstring>
@@ -271,6 +272,29 @@ TEST_F(Mappings, AFailureLeavesTheOldDatabase) {
   EXPECT_NE(sentence([&] { build(at("class.mlp")); }).find("class preset"), std::string::npos);
   EXPECT_EQ(files(), before);
   EXPECT_EQ(fs::last_write_time(at("class.mlp")), time);
+}
+
+TEST_F(Mappings, ADiskThatIsFullAtAnyMoment) {
+  options.back = false;
+  int failed = 0, built = 0;
+  for (int kilobytes = 200; kilobytes <= 1000; kilobytes += 40) {
+    fs::create_directories(folder / "tiny");
+    const std::string size = "size=" + std::to_string(kilobytes) + "k";
+    if (::mount("tmpfs", at("tiny").c_str(), "tmpfs", 0, size.c_str()) != 0) GTEST_SKIP() << "needs root";
+    bool whole = false;
+    try {
+      build(at("tiny/class.mlp"));
+      whole = io::read_mlp(at("tiny/class.mlp")).meshes.size() == 1;
+      ++built;
+    } catch (const UserError& e) {
+      whole = fs::is_empty(folder / "tiny");
+      ++failed;
+    }
+    ::umount(at("tiny").c_str());
+    EXPECT_TRUE(whole) << kilobytes;
+  }
+  EXPECT_GT(failed, 0);
+  EXPECT_GT(built, 0);
 }
 
 TEST_F(Mappings, PresetsThatBreakAParser) {
