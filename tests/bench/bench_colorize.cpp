@@ -13,6 +13,7 @@
 #include "parts/colorize/colorize_depth.h"
 #include "parts/colorize/colorize_mesh.h"
 #include "parts/examples/examples.h"
+#include "parts/render/atlas.h"
 #include "parts/render/mask.h"
 #include "parts/render/surface_color.h"
 
