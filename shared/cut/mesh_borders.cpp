@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/cut/mesh_borders.h"
 
+#include <memory>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "parts/mesh/edges.h"
 #include "parts/mesh/loops.h"
+#include "parts/spatial/closest_point.h"
 
 namespace parts::cut {
 namespace {
@@ -27,28 +29,33 @@ std::vector<char> points_of(const LabelledModel& m, const std::vector<char>& fac
   return used;
 }
 
-/// The label of the work mesh's part of a face that is nearest to a point.
+/// The label of the work mesh's part of a face that is nearest to a point. A
+/// long face may have very many parts.
 class LabelOfPart {
  public:
-  LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces)
-      : w_(w), label_(label) {
-    for (int f = 0; f < w.mesh.face_count(); ++f)
-      if (faces[w.source[f]]) parts_[w.source[f]].push_back(f);
+  LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces) : label_(label) {
+    std::unordered_map<int, spatial::Surface> surfaces;
+    for (int f = 0; f < w.mesh.face_count(); ++f) {
+      if (!faces[w.source[f]]) continue;
+      parts_[w.source[f]].faces.push_back(f);
+      surfaces[w.source[f]].triangles.push_back({w.mesh.corner(f, 0), w.mesh.corner(f, 1), w.mesh.corner(f, 2)});
+      surfaces[w.source[f]].normals.push_back(w.mesh.normal(f));
+    }
+    for (auto& [source, part] : parts_) part.tree = std::make_unique<spatial::TriangleTree>(surfaces[source]);
   }
   Territory operator()(int source, const Vec3& p) const {
-    double least = 1e300;
-    Territory found = 0;
-    for (int f : parts_.at(source)) {
-      const Vec3 q = spatial::nearest_on_triangle(p, w_.mesh.corner(f, 0), w_.mesh.corner(f, 1), w_.mesh.corner(f, 2));
-      if (const double d = (q - p).squaredNorm(); d < least) least = d, found = label_[f];
-    }
-    return found;
+    const Parts& parts = parts_.at(source);
+    int hint = 0;
+    return label_[parts.faces[parts.tree->closest(p, hint).triangle]];
   }
 
  private:
-  const WorkMesh& w_;
+  struct Parts {
+    std::vector<int> faces;
+    std::unique_ptr<spatial::TriangleTree> tree;
+  };
   const std::vector<Territory>& label_;
-  std::unordered_map<int, std::vector<int>> parts_;
+  std::unordered_map<int, Parts> parts_;
 };
 
 }  // namespace

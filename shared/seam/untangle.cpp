@@ -86,12 +86,14 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
     if (last - first != 2) free[first->from] = free[first->to] = 0;
   });
 
+  // More pairs than that are no fold at a seam: relaxing a few vertices parts nothing, and takes for ever.
+  const std::size_t hopeless = 1000 + 4 * std::size_t(std::count(asked.begin(), asked.end(), 1));
   std::vector<Vec3> best;
   long least = -1;
   for (int round = 0;; ++round) {
     const std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(threads);
     if (least < 0 || long(pairs.size()) < least) least = long(pairs.size()), best = mesh.vertices;
-    if (pairs.empty() || round == rounds) break;
+    if (pairs.empty() || round == rounds || pairs.size() > hopeless) break;
     std::vector<char> moving(mesh.vertices.size(), 0);
     for (const auto& pair : pairs)
       for (int f : pair)
