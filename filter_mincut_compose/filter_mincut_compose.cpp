@@ -62,8 +62,9 @@ Box volume_of(const Inputs& inputs) {
   return Box(min, max);
 }
 
-void log_report(const compose::ComposeReport& r, const Mesh& composed, cut::Cut cut, Progress& progress) {
-  if (cut == cut::Cut::Thesis) {
+void log_report(const compose::ComposeReport& r, const Mesh& composed, Progress& progress) {
+  log_value(progress, "cut", r.cut == cut::Cut::Thesis ? "Thesis" : "Mesh");
+  if (r.cut == cut::Cut::Thesis) {
     std::ostringstream grid;
     grid << r.grid[0] << " " << r.grid[1] << " " << r.grid[2];
     log_value(progress, "grid", grid.str());
@@ -156,7 +157,7 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   part_a.drop = dropped_faces(inputs, "DropA", part_a.mesh, "model A");
   part_b.drop = dropped_faces(inputs, "DropB", part_b.mesh, "model B");
   compose::ComposeResult result = compose::compose(part_a, part_b, options, progress);
-  log_report(result.report, result.composed, options.cut, progress);
+  log_report(result.report, result.composed, progress);
   log_seam(
       cut::score_seam(cut::borders_of(part_a.mesh, result.clipped_a), cut::borders_of(part_b.mesh, result.clipped_b),
                       std::min(cut::rms_size(part_a.mesh), cut::rms_size(part_b.mesh))),
@@ -204,7 +205,7 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   const std::string count = std::to_string(results.size());
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
-    log_report(results[i].report, results[i].composed, options.cut, progress);
+    log_report(results[i].report, results[i].composed, progress);
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     mesh::ResultRules rules;
     rules.moved = true;

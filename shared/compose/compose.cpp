@@ -15,6 +15,7 @@
 #include "parts/cut/volume.h"
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/loops.h"
+#include "parts/mesh/topology.h"
 #include "parts/seam/clip.h"
 #include "parts/spatial/face_tree.h"
 
@@ -145,6 +146,34 @@ Assembly by_voxel_cut(cut::Model& a, cut::Model& b, const Box& volume, const Com
   }
 }
 
+/// What is wrong with a seam, the worst first: edges of more than two faces, pieces
+/// more than of either model, borders that face none and crossing faces.
+std::array<double, 3> flaws_of(const Assembly& t, const cut::Model& a, const cut::Model& b) {
+  const mesh::MeshCheck made = mesh::check(t.result.composed), of_a = mesh::check(a.prepared.mesh),
+                        of_b = mesh::check(b.prepared.mesh);
+  return {double(std::max(0, made.nonmanifold_edges - of_a.nonmanifold_edges - of_b.nonmanifold_edges)),
+          double(std::max(0, made.components - std::max(of_a.components, of_b.components))), t.flaws};
+}
+
+/// The mesh cut; where its seam has flaws, the thesis' cut if that has fewer.
+Assembly by_the_better_cut(cut::Model& a, cut::Model& b, const Box& volume, const ComposeOptions& options,
+                           Progress& progress) {
+  const std::array<double, 3> none{0, 0, 0};
+  Assembly first = by_mesh_cut(a, b, volume, options, progress);
+  const std::array<double, 3> flaws = flaws_of(first, a, b);
+  const bool marked = std::count(a.drop.begin(), a.drop.end(), 1) + std::count(b.drop.begin(), b.drop.end(), 1) > 0;
+  if (flaws == none || !options.stitch || marked) return first;
+  try {
+    Assembly second = by_voxel_cut(a, b, volume, options, progress);
+    if (flaws_of(second, a, b) < flaws) {
+      second.result.report.cut = cut::Cut::Thesis;
+      return second;
+    }
+  } catch (const UserError&) {  // its voxels are too coarse, or too many
+  }
+  return first;
+}
+
 void check(const ComposeOptions& o) {
   if (o.resolution < 0) throw UserError("The Resolution is negative; give a number of voxels, or 0 for automatic.");
   if (o.smoothing.iterations < 0) throw UserError("SmoothIterations is negative; give 0 for no smoothing, or more.");
@@ -213,8 +242,9 @@ ComposeResult compose(const cut::Part& part_a, const cut::Part& part_b, const Co
 
   ComposeResult result = options.cut == cut::Cut::Thesis
                              ? std::move(by_voxel_cut(a, b, volume, options, progress).result)
-                             : std::move(by_mesh_cut(a, b, volume, options, progress).result);
+                             : std::move(by_the_better_cut(a, b, volume, options, progress).result);
   progress.stage("Finishing", 95, 100);
+  if (options.cut == cut::Cut::Thesis) result.report.cut = options.cut;
   result.report.reversed_b = result.report.reversed_b != turned;
   result.report.seconds = clock.seconds();
   progress.at(1.0);

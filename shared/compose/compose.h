@@ -24,6 +24,7 @@ struct ComposeOptions {
 
 /// What a composition measured.
 struct ComposeReport : cut::CutReport, seam::SeamReport {
+  cut::Cut cut = cut::Cut::Mesh;  ///< that made the result; Thesis also where the seam of Mesh had more flaws
   seam::SeamBlend blend;
   double seconds = 0;
 };

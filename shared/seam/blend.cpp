@@ -275,6 +275,12 @@ void give_way(Mesh& mesh, const std::vector<int>& free, const std::vector<Vec3>&
   mesh.vertices = std::move(best);
 }
 
+double longest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  double longest = 0;
+  for (std::size_t v = 0; v < from.size(); ++v) longest = std::max(longest, (to[v] - from[v]).norm());
+  return longest;
+}
+
 }  // namespace
 
 SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
@@ -289,6 +295,10 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   if (const Band band = band_around(mesh, seam, report.distance); band.vertices.size() > kMost)
     report.distance = band.away[band.vertices[kMost]];
   Neighbourhood near(mesh, seam, fixed, report.distance);
+  // What has to go farther than that is no step or crease of a seam, but the fork of two limbs or the brim of a hat.
+  constexpr double kFarthest = 0.5;
+  const double farthest = kFarthest * report.distance + gap;
+  const std::vector<Vec3> given = near.mesh.vertices;
   // A sharp crease is no small one: its normals are not known before it is flatter.
   constexpr int kRounds = 6;
   constexpr double kLittle = 0.9;
@@ -299,6 +309,10 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
     const std::vector<Vec3> before = near.mesh.vertices;
     give_way(near.mesh, membrane.free(), offsets);
     const double after = share(seam_angles(near.mesh, near.seam), 0.5);
+    if (longest_move(given, near.mesh.vertices) > farthest) {
+      report.moved = 0, report.angle_after = report.angle_before;
+      return report;
+    }
     if (round > 0 && after > report.angle_after) {
       near.mesh.vertices = before;
       break;

@@ -22,12 +22,12 @@ struct SeamBlend {
 /// all offsets it is the one that bends the surface least and takes the crease out
 /// of the seam; what the crease was is spread over the band as curvature.
 /// Beyond the distance, along the surface, vertices stay as they are, bit for
-/// bit, and so do fixed ones.
+/// bit, and so do fixed ones. Where a vertex would have to go farther than half the
+/// distance and the gap the surfaces fork, and are meant to: nothing moves then.
 /// @param seam      per vertex: not 0 on the seam
 /// @param fixed     per vertex: 1 stays where it is
-/// @param distance  world units, nothing moves if it is less than an edge; 0 = chosen from the angle across the seam
-/// and
-///                  the step that it was: four to twelve edges, and no more than
+/// @param distance  world units, nothing moves if it is less than an edge; 0 = chosen from the angle across the
+///                  seam and the step that it was: four to twelve edges, and no more than
 ///                  6 % of the mesh's size where four are less
 /// @param gap       world units; how far the borders were apart before
 SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
