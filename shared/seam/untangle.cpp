@@ -50,14 +50,15 @@ class Neighbourhood {
   }
 
   /// Pairs of crossing faces, at least one of them asked about.
-  std::vector<std::array<int, 2>> crossings(int threads) const {
+  /// @param limit  stop after about that many
+  std::vector<std::array<int, 2>> crossings(long limit, int threads) const {
     Mesh local;
     local.vertices = mesh_.vertices;
     for (int f : faces_) local.faces.push_back(mesh_.faces[f]);
     std::vector<int> old_vertex;
     local = mesh::take_faces(local, std::vector<char>(faces_.size(), 1), &old_vertex);
     std::vector<std::array<int, 2>> pairs;
-    for (const auto& [f, g] : mesh::intersecting_faces(local, 0, threads))
+    for (const auto& [f, g] : mesh::intersecting_faces(local, limit, threads))
       if (asked_[faces_[f]] || asked_[faces_[g]]) pairs.push_back({faces_[f], faces_[g]});
     return pairs;
   }
@@ -87,13 +88,14 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
   });
 
   // More pairs than that are no fold at a seam: relaxing a few vertices parts nothing, and takes for ever.
-  const std::size_t hopeless = 1000 + 4 * std::size_t(std::count(asked.begin(), asked.end(), 1));
+  const long hopeless = 1000 + 4 * std::count(asked.begin(), asked.end(), 1);
   std::vector<Vec3> best;
   long least = -1;
   for (int round = 0;; ++round) {
-    const std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(threads);
-    if (least < 0 || long(pairs.size()) < least) least = long(pairs.size()), best = mesh.vertices;
-    if (pairs.empty() || round == rounds || pairs.size() > hopeless) break;
+    const std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(hopeless, threads);
+    const long crossings = std::min(long(pairs.size()), hopeless);
+    if (least < 0 || crossings < least) least = crossings, best = mesh.vertices;
+    if (pairs.empty() || round == rounds || crossings == hopeless) break;
     std::vector<char> moving(mesh.vertices.size(), 0);
     for (const auto& pair : pairs)
       for (int f : pair)

@@ -146,7 +146,7 @@ bool survives(unsigned seed, bool& refused) {
 
 int main(int argc, char** argv) {
   const unsigned from = argc > 1 ? unsigned(std::atoi(argv[1])) : 0;
-  const unsigned to = argc > 2 ? unsigned(std::atoi(argv[2])) : from + 300;
+  const unsigned to = argc > 2 ? unsigned(std::atoi(argv[2])) : from + 100;
   unsigned refusals = 0;
   for (unsigned seed = from; seed < to; ++seed) {
     std::printf("seed %u\r", seed);
