@@ -38,7 +38,7 @@ struct ResultRules {
   bool joins = false;      ///< more is asked: the inputs become one piece
   bool may_part = false;   ///< more pieces
   bool may_open = false;   ///< more borders, which may meet in a vertex
-  bool may_cross = false;  ///< faces that cross
+  bool may_cross = false;  ///< faces that cross, and edges of several surfaces in one place
   bool moved = false;      ///< parts of the inputs lie elsewhere in it: flaws are compared by their number
 };
 

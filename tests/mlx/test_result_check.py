@@ -36,7 +36,11 @@ class ResultCheck(lib.MeshCase):
         self.assertFalse(result.warnings, "one piece fewer than the inputs have")
 
     def test_without_allow_flaws_it_fails_and_changes_nothing(self):
-        models = [trunk(), branch().scaled(0.2)]  # one inside the other: nothing joins them
+        # Two sheets of a plane, cut along each other's border: nothing joins them.
+        left, right = shapes.grid(2, 10), shapes.grid(2, 10)
+        right.v[:, 0] += 1
+        models = [left.select_faces(lambda c: c[:, 0] < left.v[:, 0].min() + 0.5),
+                  right.select_faces(lambda c: c[:, 0] > right.v[:, 0].max() - 0.5)]
         allowed = run(models, [template("compose")])
         self.assertSucceeded(allowed)
         self.assertIn("2 pieces where 1 would do", allowed.warnings[-1])
