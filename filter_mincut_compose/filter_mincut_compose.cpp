@@ -206,6 +206,12 @@ Outcome deform_layer(const Inputs& inputs, Progress& progress) {
   for (size_t i = 0; i < results.size(); ++i) {
     if (results.size() > 1) log_value(progress, "frame", std::to_string(i + 1) + "/" + count);
     log_report(results[i].report, results[i].composed, progress);
+    constexpr double kTorn = 0.5;  // of the model's size: no joint opens as far
+    if (results[i].report.scale > 0 && results[i].report.seam_gap > kTorn * results[i].report.scale)
+      log_value(
+          progress, "warning",
+          "The pose moves the parts so far from each other that the surface between them is drawn out; look at it "
+          "before you use it, or give a pivot in the joint.");
     const std::string name = results.size() > 1 ? "Deformed " + std::to_string(i + 1) + " of " + count : "Deformed";
     mesh::ResultRules rules;
     rules.moved = true;

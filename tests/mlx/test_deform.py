@@ -89,6 +89,12 @@ class Deform(lib.MeshCase):
         self.assertSucceeded(result)
         self.check(result.mesh(), arm().scaled(2))
 
+    def test_parts_torn_apart_are_said(self):
+        self.assertFalse(run([arm()], [template("deform", **BEND)]).warnings)
+        torn = run([arm()], [template("deform", Translation=(100, 0, 0))])
+        self.assertSucceeded(torn)
+        self.assertIn("drawn out", torn.warnings[-1])
+
 
 if __name__ == "__main__":
     lib.main()

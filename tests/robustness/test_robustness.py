@@ -116,7 +116,8 @@ def damaged():
         yield compose(f"both: {name}, Thesis", each(damage, models()), closed=closed, Cut="Thesis", Resolution=60)
         yield align(f"moving: {name}", first(damage, bones()))
         yield align(f"fixed: {name}", second(damage, bones()))
-        yield deform(name, [damage(arm())], closed=closed)
+        # It keeps the faces of the model, and so what is wrong with them.
+        yield deform(name, [damage(arm())], closed=closed and name not in ("doubled faces", "flipped faces"))
 
 
 def sizes():
@@ -172,7 +173,7 @@ def constraints():
     yield compose("an inverted box", None, {"sentence"}, **box("KeepA", (1, 1, 1), (-1, -1, -1)))
     yield compose("a box that is not a number", None, {"sentence"}, **box("KeepA", (NAN, 0, 0), (1, 1, 1)))
     yield compose("a point far away", None, FINE, **box("KeepA", (500, 0, 0)))
-    yield compose("both constraints in one voxel", None, {"sentence"}, **box("KeepA", (0.1, 0, 0.5)),
+    yield compose("both constraints in one place", None, {"sentence", "flawed"}, **box("KeepA", (0.1, 0, 0.5)),
                   **box("KeepB", (0.1, 0, 0.5)), Resolution=16)
     yield deform("one part selected for both", None, FINE, Fixed="Selected faces", Moving="Selected faces")
     yield deform("nothing selected", [shapes.sphere()], {"sentence"})
@@ -195,13 +196,12 @@ def volumes():
 def numbers():
     for resolution, allowed in ((1, FINE), (2, FINE), (3, FINE), (-1, {"sentence"}), (100000, {"sentence"}),
                                 (2000000000, {"sentence"})):
-        yield compose(f"resolution {resolution}", None, allowed, Resolution=resolution)
-        yield deform(f"resolution {resolution}", None, allowed, Resolution=resolution)
+        yield compose(f"resolution {resolution}", None, allowed, Resolution=resolution, Cut="Thesis")
+        yield deform(f"resolution {resolution}", None, allowed, Resolution=resolution, Cut="Thesis")
     for name, values in (("negative iterations", dict(SmoothIterations=-1)), ("weight NaN", dict(SmoothWeight="nan")),
                          ("weight 5", dict(SmoothWeight=5)), ("weight -1", dict(SmoothWeight=-1)),
                          ("distance NaN", dict(SmoothDistance="nan")), ("distance inf", dict(SmoothDistance="inf")),
-                         ("distance -1", dict(SmoothDistance=-1)), ("cut number 7", dict(Cut=7)),
-                         ("the cut to come", dict(Cut="Mesh"))):
+                         ("distance -1", dict(SmoothDistance=-1)), ("cut number 7", dict(Cut=7))):
         yield compose(name, None, {"sentence"}, **values)
         yield deform(name, None, {"sentence"}, **values)
     yield compose("resolution 1500 in 1.5 GB", None, FINE, Resolution=1500)._replace(memory=3 << 29)
@@ -220,7 +220,7 @@ def numbers():
                          ("pivot inf", dict(Pivot=(INF, 0, 0)))):
         yield deform(name, None, {"sentence"}, **values)
     yield deform("a pose that moves nothing", None, FINE, Angle=0)
-    yield deform("a pose that moves all away", None, {"sentence"}, Translation=(100, 0, 0))
+    yield deform("a pose that moves all away", None, {"ok"}, Translation=(100, 0, 0))  # and a warning: mlx.deform
     yield deform("angle 1e9", None, FINE, Angle=1e9)
     yield deform("axis 1e-20", None, {"ok"}, closed=True, Axis=(0, 1e-20, 0))
     yield deform("scale 1e6", None, FINE, Scale=1e6)
