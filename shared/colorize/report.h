@@ -16,7 +16,7 @@ struct ColorizeReport {
   bool aligned = false;                        ///< the query was moved and scaled into the examples' frame
   double patch_distance = 0;                   ///< root mean square difference of patches, in standard deviations
 
-  /// Members of a class come to 0.4 to 0.8, others, and members that stand otherwise, to more (bench_colorize).
+  /// A bound that is not calibrated yet: members of a class mostly stay below it.
   bool trusted() const { return patch_distance < 1; }
 };
 
