@@ -15,6 +15,7 @@
 #include "parts/render/depth_jump.h"
 #include "parts/render/depth_mesh.h"
 #include "parts/render/view_image.h"
+#include "support/folder.h"
 
 namespace parts {
 namespace {
@@ -130,9 +131,7 @@ TEST(DepthJump, FollowsNoiseAndUnits) {
   EXPECT_EQ(render::automatic_jump(cv::Mat(4, 4, CV_32F, cv::Scalar(kNaN)), camera), 0);
 }
 
-struct ViewImages : testing::Test {
-  ViewImages() : folder(fs::temp_directory_path() / "view_images") { fs::create_directories(folder); }
-  ~ViewImages() override { fs::remove_all(folder); }
+struct ViewImages : test::Folder {
   std::string saved(int width, int height, const char* name = "a.png") const {
     cv::Mat image(height, width, CV_8UC3, cv::Scalar(9, 9, 9));
     image.rowRange(0, height / 3).setTo(cv::Scalar(200, 0, 0));
@@ -152,7 +151,6 @@ struct ViewImages : testing::Test {
     std::ofstream(path, std::ios::binary) << data;
     return path;
   }
-  fs::path folder;
 };
 
 TEST_F(ViewImages, ASensorsOwnPairFits) {

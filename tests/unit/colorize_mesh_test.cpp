@@ -15,6 +15,7 @@
 #include "parts/io/mesh_io.h"
 #include "parts/render/atlas.h"
 #include "parts/render/check_memory.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts::test {
@@ -43,22 +44,18 @@ Mesh painted(Mesh m, double shade = 1) {
   return m;
 }
 
-class ColorizeMeshTest : public ::testing::Test {
+class ColorizeMeshTest : public test::Folder {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("colorize_mesh_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
     options_.views = render::parse_views("0,0; 90,0; 180,0; -90,0; 0,80; 0,-80");
     options_.rendering.width = 60, options_.rendering.height = 80;
     options_.rendering.light.ambient = 1, options_.rendering.back = false;
     options_.patch_sizes = {5, 7};
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  void model(const char* name, const Mesh& mesh) const { io::write_mesh(mesh, (folder_ / name).string()); }
+  void model(const char* name, const Mesh& mesh) const { io::write_mesh(mesh, (folder / name).string()); }
   colorize::MeshColors colored(const Mesh& mesh) {
     Progress silent;
-    examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering,
+    examples::ClassModels models(io::ModelDatabase(folder.string(), silent), options_.views, options_.rendering,
                                  silent);
     return colorize::colorize_mesh(mesh, models, options_, silent);
   }
@@ -69,7 +66,6 @@ class ColorizeMeshTest : public ::testing::Test {
     return sum / (3.0 * mesh.vertex_count());
   }
 
-  fs::path folder_;
   colorize::ColorizeMeshOptions options_;
 };
 
@@ -88,7 +84,7 @@ TEST_F(ColorizeMeshTest, ColorsComeToTheirPlacesAllAround) {
 TEST_F(ColorizeMeshTest, ProgressNeverRunsBackwards) {
   model("a.ply", painted(egg(0.3)));
   Progress silent;
-  examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
+  examples::ClassModels models(io::ModelDatabase(folder.string(), silent), options_.views, options_.rendering, silent);
   std::vector<int> percents;
   Progress progress([&](int percent, const char*) { return percents.push_back(percent), true; });
   colorize::colorize_mesh(egg(0.4), models, options_, progress);
@@ -141,7 +137,7 @@ TEST_F(ColorizeMeshTest, FindsTheAxesThatTheMeshStandsAlong) {
   for (unsigned seed = 1; seed < 6; ++seed)
     model(("bust" + std::to_string(seed) + ".ply").c_str(), painted(bust(seed, 30)));
   Progress silent;
-  examples::ClassModels models(io::ModelDatabase(folder_.string(), silent), options_.views, options_.rendering, silent);
+  examples::ClassModels models(io::ModelDatabase(folder.string(), silent), options_.views, options_.rendering, silent);
   const Mesh query = bust(9, 30);
   const auto found = [&](const Eigen::Matrix3d& turn) {
     const Mesh turned = moved(query, Eigen::Affine3d(turn));

@@ -41,11 +41,8 @@ bool same(const cv::Mat& a, const cv::Mat& b) {  // bit for bit but for the bits
 }
 
 /// A folder with a class of painted blobs, of which one is in other units.
-struct Mappings : testing::Test {
-  Mappings()
-      : folder(fs::temp_directory_path() /
-               ("mappings_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder);
+struct Mappings : test::Folder {
+  Mappings() {
     fs::create_directories(folder / "models");
     for (int i = 0; i < 3; ++i) {
       Mesh blob = noisy_sphere({0, 0, 0}, 1, 3, 0.3, unsigned(i + 1));
@@ -56,8 +53,6 @@ struct Mappings : testing::Test {
     }
     options.width = 60, options.height = 80;
   }
-  ~Mappings() override { fs::remove_all(folder); }
-  std::string at(const char* name) const { return (folder / name).string(); }
   io::ModelDatabase models() { return io::ModelDatabase(at("models"), progress); }
   examples::MappingsReport build(const std::string& output) {
     return examples::build_mappings(models(), views, output, options, progress);
@@ -69,7 +64,6 @@ struct Mappings : testing::Test {
     return names;
   }
 
-  fs::path folder;
   Progress progress;
   examples::ExampleOptions options;
   std::vector<render::View> views = {{0, 0}, {30, -15}};

@@ -23,25 +23,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshIo : public ::testing::Test {
+class MeshIo : public test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("mesh_io_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
   void TearDown() override {
-    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
       if (const std::string ending = lower_extension(entry.path()); entry.is_regular_file() && !ending.empty())
         if (entry.file_size() < 65536) test::keep_for_corpus(ending.substr(1), test::contents(entry.path()));
-    fs::remove_all(folder_);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   std::string file(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
+    std::ofstream(at(name), std::ios::binary) << bytes;
     if (const std::string ending = lower_extension(name); !ending.empty())
       test::keep_for_corpus(ending.substr(1), bytes);
-    return path(name);
+    return at(name);
   }
   Mesh read(const std::string& name, const std::string& bytes) const { return io::read_mesh(file(name, bytes)); }
   /// The sentence that reading ends with; "" if it does not fail.
@@ -53,7 +46,6 @@ class MeshIo : public ::testing::Test {
     }
     return "";
   }
-  fs::path folder_;
 };
 
 Mesh with_everything() {
@@ -87,8 +79,8 @@ void expect_same_wedges(const Mesh& a, const Mesh& b) {
 
 TEST_F(MeshIo, PlyKeepsEverything) {
   const Mesh mesh = with_everything();
-  io::write_mesh(mesh, path("m.ply"));
-  const Mesh back = io::read_mesh(path("m.ply"));
+  io::write_mesh(mesh, at("m.ply"));
+  const Mesh back = io::read_mesh(at("m.ply"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_normal, mesh.vertex_normal);
@@ -99,20 +91,20 @@ TEST_F(MeshIo, PlyKeepsEverything) {
   EXPECT_EQ(back.face_quality, mesh.face_quality);
   EXPECT_EQ(back.face_selected, mesh.face_selected);
   expect_same_wedges(back, mesh);
-  EXPECT_EQ(back.textures, (std::vector<std::string>{path("a b.png"), path("c.jpg")}));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "no drafts are left";
+  EXPECT_EQ(back.textures, (std::vector<std::string>{at("a b.png"), at("c.jpg")}));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "no drafts are left";
 }
 
 TEST_F(MeshIo, PlyOfFloatsIsSmaller) {
-  io::write_mesh(test::box({0, 0, 0}, {1, 1, 1}), path("floats.ply"));
-  io::write_mesh(test::box({0, 0, 0}, {0.1, 0.1, 0.1}), path("doubles.ply"));
-  EXPECT_LT(fs::file_size(path("floats.ply")), fs::file_size(path("doubles.ply")));
+  io::write_mesh(test::box({0, 0, 0}, {1, 1, 1}), at("floats.ply"));
+  io::write_mesh(test::box({0, 0, 0}, {0.1, 0.1, 0.1}), at("doubles.ply"));
+  EXPECT_LT(fs::file_size(at("floats.ply")), fs::file_size(at("doubles.ply")));
 }
 
 TEST_F(MeshIo, ObjKeepsWhatItHolds) {
   const Mesh mesh = with_everything();
-  io::write_mesh(mesh, path("m.obj"));
-  const Mesh back = io::read_mesh(path("m.obj"));
+  io::write_mesh(mesh, at("m.obj"));
+  const Mesh back = io::read_mesh(at("m.obj"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_color, mesh.vertex_color);
@@ -125,7 +117,7 @@ TEST_F(MeshIo, ObjKeepsWhatItHolds) {
     const int t = back.wedges[f].texture, u = mesh.wedges[f].texture;
     ASSERT_EQ(t < 0, u < 0);
     if (t >= 0) {
-      EXPECT_EQ(back.textures[t], path(mesh.textures[u]));
+      EXPECT_EQ(back.textures[t], at(mesh.textures[u]));
     } else {
       EXPECT_EQ(back.face_color[f], mesh.face_color[f]);
     }
@@ -134,8 +126,8 @@ TEST_F(MeshIo, ObjKeepsWhatItHolds) {
 
 TEST_F(MeshIo, OffKeepsWhatItHolds) {
   const Mesh mesh = with_everything();
-  io::write_mesh(mesh, path("m.off"));
-  const Mesh back = io::read_mesh(path("m.off"));
+  io::write_mesh(mesh, at("m.off"));
+  const Mesh back = io::read_mesh(at("m.off"));
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.vertex_color, mesh.vertex_color);
@@ -146,24 +138,24 @@ TEST_F(MeshIo, OffKeepsWhatItHolds) {
 TEST_F(MeshIo, TinyCoordinatesSurviveText) {
   const Mesh mesh = test::sphere({0, 0, 0}, 1e-6, 1);
   for (const char* name : {"m.obj", "m.off"}) {
-    io::write_mesh(mesh, path(name));
-    EXPECT_EQ(io::read_mesh(path(name)).vertices, mesh.vertices);
+    io::write_mesh(mesh, at(name));
+    EXPECT_EQ(io::read_mesh(at(name)).vertices, mesh.vertices);
   }
 }
 
 TEST_F(MeshIo, TexturesAreNamedFromTheFileThatNamesThem) {
-  fs::create_directories(path("images"));
+  fs::create_directories(at("images"));
   file("images/skin.png", "not read here");
   Mesh mesh = with_everything();
-  mesh.textures = {path("images/skin.png"), "missing.png"};
+  mesh.textures = {at("images/skin.png"), "missing.png"};
   for (const char* name : {"m.ply", "m.obj"}) {
-    io::write_mesh(mesh, path(name));
-    const Mesh back = io::read_mesh(path(name));
+    io::write_mesh(mesh, at(name));
+    const Mesh back = io::read_mesh(at(name));
     ASSERT_EQ(back.textures.size(), 2u);
     const bool skin_first = back.textures[0].find("skin") != std::string::npos;
-    EXPECT_EQ(back.textures[skin_first ? 0 : 1], path("images/skin.png"));
-    std::ifstream written(path(name), std::ios::binary);
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(written), {}).find(folder_.string()), std::string::npos);
+    EXPECT_EQ(back.textures[skin_first ? 0 : 1], at("images/skin.png"));
+    std::ifstream written(at(name), std::ios::binary);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(written), {}).find(folder.string()), std::string::npos);
   }
 }
 
@@ -173,8 +165,8 @@ TEST_F(MeshIo, BackslashesAndForeignFolders) {
   const Mesh mesh = read("m.obj",
                          "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
                          "usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
-  EXPECT_EQ(mesh.textures[0], path("skin.png"));
-  EXPECT_EQ(mesh.textures[1], path("skin.png"));
+  EXPECT_EQ(mesh.textures[0], at("skin.png"));
+  EXPECT_EQ(mesh.textures[1], at("skin.png"));
   EXPECT_EQ(mesh.wedges[1].texture, 1);
 }
 
@@ -398,14 +390,14 @@ TEST(Arrays, FlawsAreSeen) {
 TEST_F(MeshIo, AFlawedMeshIsNotWritten) {
   Mesh mesh = with_everything();
   mesh.face_color.pop_back();
-  EXPECT_THROW(io::write_mesh(mesh, path("m.ply")), std::logic_error);
-  EXPECT_FALSE(fs::exists(path("m.ply")));
+  EXPECT_THROW(io::write_mesh(mesh, at("m.ply")), std::logic_error);
+  EXPECT_FALSE(fs::exists(at("m.ply")));
 }
 
 TEST_F(MeshIo, MaterialsOfTheField) {
   const std::string obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
   file("skin one.png", "");
-  fs::create_directories(path("tex"));
+  fs::create_directories(at("tex"));
   file("tex/Inner.JPG", "");
   const std::string latin = "K\xf6pfe.png", utf8 = "K\xc3\xb6pfe.png";
   file(utf8, "");
@@ -426,7 +418,7 @@ TEST_F(MeshIo, MaterialsOfTheField) {
     std::vector<std::string> missing;
     const Mesh mesh = io::read_mesh(file("m.obj", obj), {}, &missing);
     ASSERT_EQ(mesh.textures.size(), 1u) << line;
-    EXPECT_EQ(mesh.textures[0], path(found)) << line;
+    EXPECT_EQ(mesh.textures[0], at(found)) << line;
     EXPECT_TRUE(missing.empty()) << line;
     EXPECT_EQ(mesh.wedges[0].texture, 0);
   }
@@ -434,8 +426,8 @@ TEST_F(MeshIo, MaterialsOfTheField) {
   std::vector<std::string> missing;
   io::read_mesh(file("m.obj", obj), {}, &missing);
   EXPECT_EQ(missing, (std::vector<std::string>{"lost.png"}));
-  fs::remove(path("m.mtl"));
-  io::read_mesh(path("m.obj"), {}, &missing);
+  fs::remove(at("m.mtl"));
+  io::read_mesh(at("m.obj"), {}, &missing);
   EXPECT_EQ(missing, (std::vector<std::string>{"m.mtl"}));
 }
 
@@ -455,12 +447,12 @@ TEST_F(MeshIo, PolygonsOfManyCornersAreQuick) {
 }
 
 TEST_F(MeshIo, ReadingCanBeCancelledAndIsNotBlind) {
-  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.ply"));
-  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.obj"));
-  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), path("m.off"));
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), at("m.ply"));
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), at("m.obj"));
+  io::write_mesh(test::sphere({0, 0, 0}, 1, 6), at("m.off"));
   for (const char* name : {"m.ply", "m.obj", "m.off"}) {
     int polls = 0;
-    EXPECT_THROW(io::read_mesh(path(name),
+    EXPECT_THROW(io::read_mesh(at(name),
                                [&] {
                                  if (++polls == 4) throw Cancelled();
                                }),
@@ -471,7 +463,7 @@ TEST_F(MeshIo, ReadingCanBeCancelledAndIsNotBlind) {
     fs::resize_file(file(name, ""), std::uintmax_t(1) << 42);
     const std::string s = [&] {
       try {
-        io::read_mesh(path(name));
+        io::read_mesh(at(name));
       } catch (const UserError& e) {
         return std::string(e.what());
       }
@@ -550,8 +542,8 @@ TEST_F(MeshIo, EveryCutOfAFileIsASentenceOrAMesh) {
   mesh.faces.resize(20);
   mesh.face_color.resize(20), mesh.face_quality.resize(20), mesh.face_selected.resize(20), mesh.wedges.resize(20);
   for (const char* name : {"m.ply", "m.obj", "m.off"}) {
-    io::write_mesh(mesh, path(name));
-    std::ifstream in(path(name), std::ios::binary);
+    io::write_mesh(mesh, at(name));
+    std::ifstream in(at(name), std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(in), {});
     for (std::size_t n = 0; n < bytes.size(); n += 1 + bytes.size() / 150) {
       sentence(std::string("cut_") + name, bytes.substr(0, n));
@@ -563,16 +555,16 @@ TEST_F(MeshIo, EveryCutOfAFileIsASentenceOrAMesh) {
 }
 
 TEST_F(MeshIo, FilesThatCannotBeOpened) {
-  EXPECT_THROW(io::read_mesh(path("missing.ply")), UserError);
-  fs::create_directories(path("folder.ply"));
-  EXPECT_THROW(io::read_mesh(path("folder.ply")), UserError);
-  EXPECT_THROW(io::write_mesh(test::sphere(), path("folder.ply")), UserError);
-  EXPECT_THROW(io::write_mesh(test::sphere(), path("no/such/folder/a.ply")), UserError);
-  EXPECT_THROW(io::write_mesh(test::sphere(), path("a.stl")), UserError);
+  EXPECT_THROW(io::read_mesh(at("missing.ply")), UserError);
+  fs::create_directories(at("folder.ply"));
+  EXPECT_THROW(io::read_mesh(at("folder.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), at("folder.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), at("no/such/folder/a.ply")), UserError);
+  EXPECT_THROW(io::write_mesh(test::sphere(), at("a.stl")), UserError);
   if (fs::exists("/dev/full")) {
-    fs::create_symlink("/dev/full", path("full.ply"));
-    EXPECT_THROW(io::write_mesh(test::sphere(), path("full.ply")), UserError);
-    EXPECT_TRUE(fs::is_symlink(path("full.ply")));
+    fs::create_symlink("/dev/full", at("full.ply"));
+    EXPECT_THROW(io::write_mesh(test::sphere(), at("full.ply")), UserError);
+    EXPECT_TRUE(fs::is_symlink(at("full.ply")));
   }
 }
 

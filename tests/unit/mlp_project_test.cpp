@@ -16,23 +16,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MlpProjectFile : public ::testing::Test {
+class MlpProjectFile : public test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("mlp_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
   void TearDown() override {
     for (const char* name : {"p.mlp", "q.mlp"})
-      if (fs::exists(path(name))) test::keep_for_corpus("mlp", test::contents(path(name)));
-    fs::remove_all(folder_);
+      if (fs::exists(at(name))) test::keep_for_corpus("mlp", test::contents(at(name)));
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   io::MlpProject read(const std::string& text) const {
-    std::ofstream(path("p.mlp"), std::ios::binary) << text;
+    std::ofstream(at("p.mlp"), std::ios::binary) << text;
     test::keep_for_corpus("mlp", text);
-    return io::read_mlp(path("p.mlp"));
+    return io::read_mlp(at("p.mlp"));
   }
   std::string sentence(const std::string& text) const {
     try {
@@ -42,7 +35,6 @@ class MlpProjectFile : public ::testing::Test {
     }
     return "";
   }
-  fs::path folder_;
 };
 
 // As MeshLab 2020.09 writes it.
@@ -74,7 +66,7 @@ TEST_F(MlpProjectFile, ReadsWhatMeshLabWrites) {
   const io::MlpProject p = read(kMeshLabs);
   ASSERT_EQ(p.meshes.size(), 2u);
   EXPECT_EQ(p.meshes[0].label, "a & b");
-  EXPECT_EQ(p.meshes[0].file, path("models/a <1>.ply"));
+  EXPECT_EQ(p.meshes[0].file, at("models/a <1>.ply"));
   EXPECT_EQ((p.meshes[0].matrix * Eigen::Vector4d(1, 2, 3, 1)).head<3>(), Vec3(6, 3, 9));
   EXPECT_TRUE(p.meshes[1].matrix.isIdentity());
   ASSERT_EQ(p.rasters.size(), 1u);
@@ -87,7 +79,7 @@ TEST_F(MlpProjectFile, ReadsWhatMeshLabWrites) {
   EXPECT_EQ(r.camera.pixel_mm, Eigen::Vector2d(0.5, 0.25));
   EXPECT_EQ(r.camera.type, 1);
   EXPECT_EQ(r.planes.size(), 2u);
-  EXPECT_EQ(r.file_of(io::plane::kDepth), path("v1.tif"));
+  EXPECT_EQ(r.file_of(io::plane::kDepth), at("v1.tif"));
   EXPECT_EQ(r.file_of(io::plane::kMask), "");
 }
 
@@ -95,9 +87,9 @@ TEST_F(MlpProjectFile, ReadsBackWhatItWrites) {
   io::MlpProject p = read(kMeshLabs);
   p.meshes[0].matrix(0, 3) = 1.0 / 3;
   p.meshes[1].label = "\"quoted\" <&>";
-  p.meshes[1].file = fs::absolute(path("sub/ä.ply")).string();
-  io::write_mlp(p, path("q.mlp"));
-  const io::MlpProject q = io::read_mlp(path("q.mlp"));
+  p.meshes[1].file = fs::absolute(at("sub/ä.ply")).string();
+  io::write_mlp(p, at("q.mlp"));
+  const io::MlpProject q = io::read_mlp(at("q.mlp"));
   ASSERT_EQ(q.meshes.size(), 2u);
   EXPECT_EQ(q.meshes[0].matrix, p.meshes[0].matrix);
   EXPECT_EQ(q.meshes[1].label, p.meshes[1].label);
@@ -107,14 +99,14 @@ TEST_F(MlpProjectFile, ReadsBackWhatItWrites) {
   EXPECT_EQ(q.rasters[0].camera.translation, p.rasters[0].camera.translation);
   EXPECT_EQ(q.rasters[0].camera.focal_mm, 50);
   EXPECT_EQ(q.rasters[0].planes[1].file, p.rasters[0].planes[1].file);
-  for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_FALSE(is_draft_name(entry.path().filename()));
+  for (const auto& entry : fs::directory_iterator(folder)) EXPECT_FALSE(is_draft_name(entry.path().filename()));
 }
 
 TEST_F(MlpProjectFile, NamesFilesRelativeToItsFolder) {
   io::MlpProject p;
-  p.meshes.push_back({"m", path("models/m.ply")});
-  io::write_mlp(p, path("p.mlp"));
-  std::ifstream file(path("p.mlp"));
+  p.meshes.push_back({"m", at("models/m.ply")});
+  io::write_mlp(p, at("p.mlp"));
+  std::ifstream file(at("p.mlp"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("filename=\"models/m.ply\""), std::string::npos) << text;
 }
@@ -129,9 +121,9 @@ TEST_F(MlpProjectFile, SaysWhatIsWrong) {
   EXPECT_NE(sentence(head + "1 0 0" + tail).find("3 numbers"), std::string::npos);
   EXPECT_NE(sentence(head + "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 nan" + tail), "");
   EXPECT_NE(sentence(head + "AAAAAA==" + tail), "");
-  EXPECT_THROW(io::read_mlp(path("missing.mlp")), UserError);
-  EXPECT_THROW(io::read_mlp(folder_.string()), UserError);
-  EXPECT_THROW(io::write_mlp({}, path("no/such/folder/p.mlp")), UserError);
+  EXPECT_THROW(io::read_mlp(at("missing.mlp")), UserError);
+  EXPECT_THROW(io::read_mlp(folder.string()), UserError);
+  EXPECT_THROW(io::write_mlp({}, at("no/such/folder/p.mlp")), UserError);
 }
 
 // Entities that expand to gigabytes must end as an error, soon.
@@ -151,11 +143,11 @@ TEST_F(MlpProjectFile, IsNotBlownUpByEntities) {
 TEST_F(MlpProjectFile, NumbersThatNoIntegerHolds) {
   const std::string head = "<MeshLabProject><RasterGroup><MLRaster label='r'>",
                     tail = "</MLRaster></RasterGroup></MeshLabProject>";
-  std::ofstream(path("p.mlp")) << head +
-                                      "<VCGCamera ViewportPx='1e300 -1e300' CameraType='1e99'/>"
-                                      "<Plane semantic='1e300' fileName='x'/><Plane semantic='-1e300' fileName='y'/>" +
-                                      tail;
-  const io::MlpProject p = io::read_mlp(path("p.mlp"));
+  std::ofstream(at("p.mlp")) << head +
+                                    "<VCGCamera ViewportPx='1e300 -1e300' CameraType='1e99'/>"
+                                    "<Plane semantic='1e300' fileName='x'/><Plane semantic='-1e300' fileName='y'/>" +
+                                    tail;
+  const io::MlpProject p = io::read_mlp(at("p.mlp"));
   ASSERT_EQ(p.rasters.size(), 1u);
   EXPECT_EQ(p.rasters[0].planes[0].semantic, INT_MAX);
   EXPECT_EQ(p.rasters[0].planes[1].semantic, INT_MIN);
@@ -167,9 +159,9 @@ TEST_F(MlpProjectFile, DeepNestingAndStrangeNamesComeBack) {
   for (int i = 0; i < 200000; ++i) deep += "<a>";
   EXPECT_NE(sentence(deep).find("is damaged"), std::string::npos);
   io::MlpProject p;
-  p.meshes.push_back({"<a> & \"b\" 'c' \t K\xc3\xb6pfe", path("x & y\".ply")});
-  io::write_mlp(p, path("q.mlp"));
-  const io::MlpProject q = io::read_mlp(path("q.mlp"));
+  p.meshes.push_back({"<a> & \"b\" 'c' \t K\xc3\xb6pfe", at("x & y\".ply")});
+  io::write_mlp(p, at("q.mlp"));
+  const io::MlpProject q = io::read_mlp(at("q.mlp"));
   ASSERT_EQ(q.meshes.size(), 1u);
   EXPECT_EQ(q.meshes[0].label, p.meshes[0].label);
   EXPECT_EQ(q.meshes[0].file, p.meshes[0].file);

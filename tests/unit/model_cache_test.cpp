@@ -28,24 +28,18 @@ bool same(const search::ModelRaster& a, const search::ModelRaster& b) {
   return search::encode_raster(a, key) == search::encode_raster(b, key);
 }
 
-class Cache : public ::testing::Test {
+class Cache : public test::Folder {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("model_cache_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
     for (unsigned i = 0; i < 3; ++i) put("m" + std::to_string(i) + ".ply", i);
   }
-  void TearDown() override {
-    fs::permissions(folder_, fs::perms::owner_all);
-    fs::remove_all(folder_);
-  }
+  void TearDown() override { fs::permissions(folder, fs::perms::owner_all); }
   void put(const std::string& name, unsigned seed) const {
-    io::write_mesh(test::noisy_sphere(Vec3(1, 2, 3), 2, 3, 0.3, seed), (folder_ / name).string());
+    io::write_mesh(test::noisy_sphere(Vec3(1, 2, 3), 2, 3, 0.3, seed), (folder / name).string());
   }
   /// A fill by a new run; how many it had to make.
   int fill(int levels = 2, bool files = true, int kept = 100) {
-    database_ = std::make_unique<io::ModelDatabase>(folder_.string(), progress_);
+    database_ = std::make_unique<io::ModelDatabase>(folder.string(), progress_);
     const io::ModelDatabase& database = *database_;
     cache_ = std::make_unique<search::ModelCache>(database, search::ModelCache::Options{levels, files, 2, kept});
     cache_->fill(progress_);
@@ -58,31 +52,30 @@ class Cache : public ::testing::Test {
   }
   fs::path file(int i) const {
     std::vector<fs::path> files;
-    for (const auto& e : fs::directory_iterator(folder_ / ".model-cache")) files.push_back(e.path());
+    for (const auto& e : fs::directory_iterator(folder / ".model-cache")) files.push_back(e.path());
     std::sort(files.begin(), files.end());
     return files.at(std::size_t(i));
   }
   int file_count() const {
-    return int(std::distance(fs::directory_iterator(folder_ / ".model-cache"), fs::directory_iterator()));
+    return int(std::distance(fs::directory_iterator(folder / ".model-cache"), fs::directory_iterator()));
   }
 
   bool fills_undisturbed() try {
     Progress silent;
-    const io::ModelDatabase database(folder_.string(), silent);
+    const io::ModelDatabase database(folder.string(), silent);
     bool good = true;
     for (int k = 0; k < 3; ++k) {
       search::ModelCache cache(database, {2, true, 1});
       cache.fill(silent);
       for (int m = 0; m < 3; ++m) good = good && cache.raster(m);
       std::error_code error;
-      if (k == 0) fs::remove_all(folder_ / ".model-cache", error);
+      if (k == 0) fs::remove_all(folder / ".model-cache", error);
     }
     return good;
   } catch (...) {
     return false;
   }
 
-  fs::path folder_;
   std::vector<std::string> log_;
   Progress progress_{{}, [this](const std::string& line) { log_.push_back(line); }};
   std::unique_ptr<io::ModelDatabase> database_;
@@ -102,11 +95,11 @@ TEST_F(Cache, IsMadeAgainForAnotherModel) {
   put("m1.ply", 77);
   EXPECT_EQ(fill(), 1);
   // The same size, the same time, another surface.
-  const auto time = fs::last_write_time(folder_ / "m1.ply");
+  const auto time = fs::last_write_time(folder / "m1.ply");
   put("m1.ply", 78);
-  fs::last_write_time(folder_ / "m1.ply", time);
+  fs::last_write_time(folder / "m1.ply", time);
   EXPECT_EQ(fill(), 1);
-  fs::rename(folder_ / "m0.ply", folder_ / "m9.ply");
+  fs::rename(folder / "m0.ply", folder / "m9.ply");
   EXPECT_EQ(fill(), 1);
 }
 
@@ -176,21 +169,21 @@ TEST_F(Cache, ASmallFileComesBack) {
 }
 
 TEST_F(Cache, AFolderThatCannotBeWrittenCostsOnlyTime) {
-  std::ofstream(folder_ / ".model-cache") << "a file in its place";  // root may write anywhere
+  std::ofstream(folder / ".model-cache") << "a file in its place";  // root may write anywhere
   EXPECT_EQ(fill(), 3);
   EXPECT_EQ(fill(), 3);
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("cache: ", 0) == 0; }),
             2);
-  EXPECT_EQ(contents(folder_ / ".model-cache"), "a file in its place");
+  EXPECT_EQ(contents(folder / ".model-cache"), "a file in its place");
 }
 
 TEST_F(Cache, WhatIsNoLongerUsedGoes) {
   fill();
   const auto now = fs::file_time_type::clock::now();
-  fs::remove(folder_ / "m0.ply");
+  fs::remove(folder / "m0.ply");
   EXPECT_EQ(fill(), 0);
   EXPECT_EQ(file_count(), 3) << "a run that makes nothing takes nothing away";
-  const fs::path cache = folder_ / ".model-cache";
+  const fs::path cache = folder / ".model-cache";
   const std::string other = "moved.ply.0123456789abcdef", mine = "notes.txt", draft = ".parts-0123456789abcdef.draft";
   for (const std::string& name : {other, mine, draft}) {
     std::ofstream(cache / name) << "x";
@@ -212,7 +205,7 @@ TEST_F(Cache, WhatIsNoLongerUsedGoes) {
 TEST_F(Cache, OnlyRegularFilesAreOpened) {
   fill();
   fs::remove(file(0));
-  ASSERT_EQ(::mkfifo((folder_ / "pipe.ply").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
   EXPECT_EQ(fill(), 1) << "the pipe is skipped";
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(),
                           [](const std::string& l) { return l.rfind("skipped: pipe.ply", 0) == 0; }),
@@ -225,7 +218,7 @@ TEST_F(Cache, OnlyRegularFilesAreOpened) {
 
 TEST_F(Cache, CanBeTurnedOff) {
   EXPECT_EQ(fill(2, false), 3);
-  EXPECT_FALSE(fs::exists(folder_ / ".model-cache"));
+  EXPECT_FALSE(fs::exists(folder / ".model-cache"));
 }
 
 TEST_F(Cache, RunsAtTheSameTimeDoNoHarm) {
@@ -252,7 +245,7 @@ TEST_F(Cache, KeepsOnlyCoarseLevelsOfManyModels) {
   cache_->complete(1);
   const io::ModelDatabase& database = *database_;
   EXPECT_TRUE(same(*cache_->raster(1), search::rasterize_model(database.load(1), 3)));
-  fs::remove_all(folder_ / ".model-cache");
+  fs::remove_all(folder / ".model-cache");
   cache_->complete(2);
   EXPECT_TRUE(same(*cache_->raster(2), search::rasterize_model(database.load(2), 3)));
 }

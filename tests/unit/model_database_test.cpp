@@ -12,6 +12,7 @@
 #include "parts/io/mesh_io.h"
 #include "parts/io/mlp_project.h"
 #include "parts/mesh/topology.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -19,16 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ModelDatabaseTest : public ::testing::Test {
+class ModelDatabaseTest : public test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("model_database_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void file(const std::string& name, const std::string& bytes) const { std::ofstream(path(name)) << bytes; }
+  void file(const std::string& name, const std::string& bytes) const { std::ofstream(at(name)) << bytes; }
   std::string sentence(const std::string& database) {
     try {
       io::ModelDatabase(database, progress_);
@@ -38,7 +32,6 @@ class ModelDatabaseTest : public ::testing::Test {
     return "";
   }
 
-  fs::path folder_;
   std::vector<std::string> log_;
   Progress progress_{{}, [this](const std::string& line) { log_.push_back(line); }};
 };
@@ -46,10 +39,10 @@ class ModelDatabaseTest : public ::testing::Test {
 TEST_F(ModelDatabaseTest, ListsAFolderInNaturalOrder) {
   const Mesh m = test::box({0, 0, 0}, {1, 1, 1});
   for (const char* name : {"head_10.ply", "head_2.off", "Head_1.obj", "x.ply", "head_010.off"})
-    io::write_mesh(m, path(name));
+    io::write_mesh(m, at(name));
   file("notes.txt", "no model");
-  fs::create_directories(path("folder.ply"));
-  const io::ModelDatabase d(folder_.string(), progress_);
+  fs::create_directories(at("folder.ply"));
+  const io::ModelDatabase d(folder.string(), progress_);
   std::vector<std::string> names;
   for (int i = 0; i < d.size(); ++i) names.push_back(d.name(i));
   EXPECT_EQ(names, (std::vector<std::string>{"Head_1.obj", "head_2.off", "head_010.off", "head_10.ply", "x.ply"}));
@@ -72,17 +65,17 @@ TEST_F(ModelDatabaseTest, NaturalOrderIsAStrictOrder) {
 }
 
 TEST_F(ModelDatabaseTest, PlacesTheModelsOfAProjectByTheirMatrices) {
-  fs::create_directories(path("models"));
+  fs::create_directories(at("models"));
   const Mesh box = test::box({0, 0, 0}, {1, 2, 3});
-  io::write_mesh(box, path("models/a.ply"));
+  io::write_mesh(box, at("models/a.ply"));
   io::MlpProject p;
   p.meshes.resize(3);
-  for (io::MlpMesh& m : p.meshes) m.label = "box", m.file = path("models/a.ply");
+  for (io::MlpMesh& m : p.meshes) m.label = "box", m.file = at("models/a.ply");
   p.meshes[1].matrix.topLeftCorner<3, 3>() *= -2;  // mirrored
   p.meshes[1].matrix(0, 3) = 10;
-  p.meshes[2].file = path("models/lost.ply");
-  io::write_mlp(p, path("p.mlp"));
-  const io::ModelDatabase d(path("p.mlp"), progress_);
+  p.meshes[2].file = at("models/lost.ply");
+  io::write_mlp(p, at("p.mlp"));
+  const io::ModelDatabase d(at("p.mlp"), progress_);
   ASSERT_EQ(d.size(), 2);
   EXPECT_EQ(d.name(0), "box");
   EXPECT_EQ(d.name(1), "box (2)");
@@ -105,7 +98,7 @@ TEST_F(ModelDatabaseTest, NamesAndSkipsWhatCannotBeUsed) {
   file("nan.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n");
   file("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
   file("stray.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\nnan nan nan\n3 0 1 2\n");
-  const io::ModelDatabase d(folder_.string(), progress_);
+  const io::ModelDatabase d(folder.string(), progress_);
   ASSERT_EQ(d.size(), 7);
   for (int i = 0; i < 6; ++i) {
     EXPECT_FALSE(d.load_or_skip(i, progress_)) << d.name(i);
@@ -120,19 +113,19 @@ TEST_F(ModelDatabaseTest, NamesAndSkipsWhatCannotBeUsed) {
 
 TEST_F(ModelDatabaseTest, AMeshFileStandsForItsFolder) {
   for (const char* name : {"a.off", "b.off"}) file(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const io::ModelDatabase d(path("b.off"), progress_);
+  const io::ModelDatabase d(at("b.off"), progress_);
   EXPECT_EQ(d.size(), 2);
-  EXPECT_TRUE(std::filesystem::equivalent(d.path(), folder_));
+  EXPECT_TRUE(std::filesystem::equivalent(d.path(), folder));
 }
 
 TEST_F(ModelDatabaseTest, AnEmptyDatabaseIsASentence) {
-  EXPECT_NE(sentence(folder_.string()).find("choose another folder"), std::string::npos);
-  EXPECT_NE(sentence(path("none")).find("does not exist"), std::string::npos);
+  EXPECT_NE(sentence(folder.string()).find("choose another folder"), std::string::npos);
+  EXPECT_NE(sentence(at("none")).find("does not exist"), std::string::npos);
   EXPECT_NE(sentence(""), "");
   file("a.txt", "x");
-  EXPECT_NE(sentence(path("a.txt")).find("neither a folder nor"), std::string::npos);
-  io::write_mlp({}, path("p.mlp"));
-  EXPECT_NE(sentence(path("p.mlp")).find("add models"), std::string::npos);
+  EXPECT_NE(sentence(at("a.txt")).find("neither a folder nor"), std::string::npos);
+  io::write_mlp({}, at("p.mlp"));
+  EXPECT_NE(sentence(at("p.mlp")).find("add models"), std::string::npos);
 }
 
 }  // namespace

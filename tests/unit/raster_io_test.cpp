@@ -25,21 +25,13 @@ namespace fs = std::filesystem;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
 /// Files of a test, in a folder of its own.
-struct RasterIo : testing::Test {
-  RasterIo()
-      : folder(fs::temp_directory_path() /
-               ("raster_io_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
+struct RasterIo : test::Folder {
   ~RasterIo() override {
     for (const auto& entry : fs::directory_iterator(folder))
       if (entry.is_regular_file() && entry.file_size() < 65536)
         test::keep_for_corpus("image", test::contents(entry.path()));
-    fs::remove_all(folder);
   }
 
-  std::string at(const std::string& name) const { return (folder / name).string(); }
   std::string save(const std::string& name, const cv::Mat& image) const {
     EXPECT_TRUE(cv::imwrite(at(name), image));
     return at(name);
@@ -48,22 +40,14 @@ struct RasterIo : testing::Test {
     std::ofstream(at(name), std::ios::binary) << bytes;
     return at(name);
   }
-  fs::path folder;
 };
 
 /// The sentence with which a call fails; it is one, and names the file.
 template <class Call>
 std::string sentence(const Call& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    const std::string what = e.what();
-    EXPECT_EQ(what.back(), '.');
-    EXPECT_NE(what.find('"'), what.npos) << what;
-    return what;
-  }
-  ADD_FAILURE() << "no UserError";
-  return {};
+  const std::string what = test::sentence(call);
+  EXPECT_NE(what.find('"'), what.npos) << what;
+  return what;
 }
 
 #define EXPECT_SAYS(words, call) \

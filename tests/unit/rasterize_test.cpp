@@ -5,12 +5,12 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
 #include "parts/render/surface_color.h"
 #include "support/cameras.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -109,9 +109,10 @@ render::RenderOptions unlit() {
   return options;
 }
 
-TEST(Rasterize, TextureStandsUpright) {
+using RasterizeFiles = test::Folder;
+TEST_F(RasterizeFiles, TextureStandsUpright) {
   Mesh mesh = square();
-  const std::string file = (std::filesystem::temp_directory_path() / "rasterize_test_texture.png").string();
+  const std::string file = at("texture.png");
   cv::Mat image(64, 64, CV_8UC3, cv::Scalar(0, 0, 0));
   image(cv::Rect(0, 0, 32, 32)) = cv::Scalar(255, 0, 0);   // top left blue
   image(cv::Rect(32, 0, 32, 32)) = cv::Scalar(0, 255, 0);  // top right green
@@ -129,7 +130,6 @@ TEST(Rasterize, TextureStandsUpright) {
   mesh.textures = {"no such file.png"};
   const render::Rendering plain = render::render(mesh, render::load_textures(mesh), facing(mesh, 20, 20), unlit());
   EXPECT_EQ(plain.image.at<cv::Vec3b>(10, 10), cv::Vec3b(204, 200, 200));
-  std::filesystem::remove(file);
 }
 
 TEST(Rasterize, ColorsOfVerticesAndFaces) {

@@ -13,6 +13,7 @@
 #include "parts/base/error.h"
 #include "parts/io/mesh_io.h"
 #include "support/busts.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -37,25 +38,18 @@ const Bust& bust(unsigned seed) {
   return b;
 }
 
-class Search : public ::testing::Test {
+class Search : public test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("search_test_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   void add(unsigned seed, double scale = 1) {
     Mesh m = bust(seed).mesh;
     for (Vec3& v : m.vertices) v *= scale;
-    io::write_mesh(m, (folder_ / ("bust_" + std::to_string(seed) + ".off")).string());
+    io::write_mesh(m, (folder / ("bust_" + std::to_string(seed) + ".off")).string());
   }
   std::vector<search::Candidate> find(const search::SearchQuery& query, const search::SearchOptions& options = {}) {
-    const io::ModelDatabase database(folder_.string(), progress_);
+    const io::ModelDatabase database(folder.string(), progress_);
     return search::find_similar(query, database, options, progress_);
   }
 
-  fs::path folder_;
   std::vector<std::string> log_;
   Progress progress_{{}, [this](const std::string& line) { log_.push_back(line); }};
 };
@@ -158,17 +152,17 @@ TEST_F(Search, IsTheSameForAnyNumberOfThreads) {
 TEST_F(Search, RemembersWhereModelsFitted) {
   for (unsigned seed : {2u, 3u, 4u}) add(seed);
   const Eigen::Affine3d motion = turned_and_scaled(1.1);
-  const io::ModelDatabase database(folder_.string(), progress_);
+  const io::ModelDatabase database(folder.string(), progress_);
   search::SearchMemory memory;
   search::find_similar(noseless(motion), database, {}, progress_, &memory);
   EXPECT_EQ(memory.placements.size(), 3u);
-  fs::remove_all(folder_ / ".model-cache");
+  fs::remove_all(folder / ".model-cache");
   std::vector<std::string> stages;
   Progress watched([&](int, const char* stage) { return stages.push_back(stage), true; });
   const search::Candidate c = search::find_similar(noseless(motion), database, {}, watched, &memory).at(0);
   expect_nose_to_nose(c, unsigned(c.model + 2), motion);
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "Comparing everywhere"), 0);
-  EXPECT_FALSE(fs::exists(folder_ / ".model-cache"));
+  EXPECT_FALSE(fs::exists(folder / ".model-cache"));
   // Wrong memories do not mislead.
   for (auto& [model, placement] : memory.placements) placement = Eigen::Translation3d(1, 2, 3) * placement;
   const search::Candidate again = search::find_similar(noseless(motion), database, {}, progress_, &memory).at(0);
@@ -184,7 +178,7 @@ TEST_F(Search, SaysWhatIsWrong) {
     }
     return "";
   };
-  std::ofstream(folder_ / "a.off") << "OFF\n";
+  std::ofstream(folder / "a.off") << "OFF\n";
   search::SearchQuery q = noseless(Eigen::Affine3d::Identity());
   EXPECT_NE(sentence(q).find("No model of the database can be used"), std::string::npos);
   EXPECT_EQ(std::count_if(log_.begin(), log_.end(), [](const std::string& l) { return l.rfind("skipped: ", 0) == 0; }),
@@ -200,7 +194,7 @@ TEST_F(Search, SaysWhatIsWrong) {
 
 TEST_F(Search, StopsWhenCancelled) {
   add(2);
-  const io::ModelDatabase database(folder_.string(), progress_);
+  const io::ModelDatabase database(folder.string(), progress_);
   for (int last : {0, 40, 60, 80, 90}) {
     Progress p([&](int percent, const char*) { return percent < last; });
     EXPECT_THROW(search::find_similar(noseless(Eigen::Affine3d::Identity()), database, {}, p), Cancelled) << last;

@@ -8,27 +8,21 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "parts/base/error.h"
+#include "support/folder.h"
 
 namespace parts {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct TextureFiles : testing::Test {
-  TextureFiles()
-      : folder(fs::temp_directory_path() /
-               ("texture_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
+struct TextureFiles : test::Folder {
+  TextureFiles() {
     for (int x = 0; x < 6; ++x) gradient.col(x).setTo(cv::Scalar(30 * x, 20, 200 - 30 * x));
   }
-  ~TextureFiles() override { fs::remove_all(folder); }
-  std::string at(const std::string& name) const { return (folder / name).string(); }
   bool shows(const std::string& name, const cv::Mat& image) const {
     EXPECT_TRUE(cv::imwrite(at(name), image));
     return render::shows_as_texture(at(name), io::read_image(at(name)));
   }
-  fs::path folder;
   cv::Mat gradient{4, 6, CV_8UC3, cv::Scalar(0)};
 };
 
