@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "parts/base/parallel.h"
+#include "parts/base/tasks.h"
 #include "parts/mend/fit_to_rim.h"
 #include "parts/mend/shape_prior.h"
 
@@ -22,31 +23,26 @@ std::vector<std::vector<Vec3>> shapes_of(const std::vector<PosedModel>& models, 
   FitOptions fit;
   fit.rigid = fit.robust = false;
   fit.threads = 1;
-  // In bands of the cores, so that cancelling waits for one band only.
-  const int band = thread_count(threads);
-  for (int first = 0; first < others; first += band) {
-    progress.at(0.8 * first / others);
-    parallel_for(std::min(band, others - first), threads, [&](long begin, long end) {
-      for (long i = first + begin + 1; i < first + end + 1; ++i) {
-        Progress silent;
-        Mesh other;
-        other.vertices = models[i].fitted, other.faces = models[i].mesh.faces;
-        const std::vector<char> whole;
-        const FitTarget there(other, whole, other.bounds(), size);
-        const Fitted onto = fit_to_rim(base, there, fit, silent);
-        if (!(onto.share > 0.6 && onto.rms_after < 0.05 * size)) continue;
-        shapes[i] = onto.vertices;
-        int hint = 0;
-        for (Vec3& p : shapes[i]) {
-          const spatial::FaceHit hit = there.closest()(p, hint);
-          for (int k = 0; k < 3; ++k) {
-            const int v = other.faces[hit.face][k];
-            p += hit.barycentric[k] * (models[i].mesh.vertices[v] - models[i].fitted[v]);
-          }
-        }
+  run_tasks(others, thread_count(threads), progress, [&](int other, const Poll&) {
+    const PosedModel& model = models[std::size_t(other) + 1];
+    Mesh mesh;
+    mesh.vertices = model.fitted, mesh.faces = model.mesh.faces;
+    const std::vector<char> whole;
+    const FitTarget there(mesh, whole, mesh.bounds(), size);
+    Progress silent;
+    const Fitted onto = fit_to_rim(base, there, fit, silent);
+    if (!(onto.share > 0.6 && onto.rms_after < 0.05 * size)) return;
+    std::vector<Vec3>& shape = shapes[std::size_t(other) + 1];
+    shape = onto.vertices;
+    int hint = 0;
+    for (Vec3& p : shape) {
+      const spatial::FaceHit hit = there.closest()(p, hint);
+      for (int k = 0; k < 3; ++k) {
+        const int v = mesh.faces[hit.face][k];
+        p += hit.barycentric[k] * (model.mesh.vertices[v] - model.fitted[v]);
       }
-    });
-  }
+    }
+  });
   double sum = 0;
   for (std::size_t i = 0; i < models.size(); ++i)
     if (!shapes[i].empty()) weight.push_back(std::pow(std::max(models[i].rms, 1e-4 * size), -2)), sum += weight.back();
@@ -98,7 +94,9 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
   const Mesh& base = models[0].mesh;
   Blended out{base.vertices, 1};
   std::vector<double> weight;
+  progress.stage("Bringing the models onto each other", 50, 90);
   const std::vector<std::vector<Vec3>> shapes = shapes_of(models, target.size(), threads, weight, progress);
+  progress.stage("Blending the models", 90, 100);
   if (shapes.size() < 2) return out;
   out.models = int(shapes.size());
   const ShapePrior prior(shapes, weight, target.size());
@@ -106,7 +104,7 @@ Blended blend_models(const std::vector<PosedModel>& models, const FitTarget& tar
   out.vertices = prior.mean();
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
-    progress.at(0.8 + 0.2 * round / kRounds);
+    progress.at(double(round) / kRounds);
     const Targets targets = match(out.vertices, 0.25 * target.size(), 1, kAlike * target.size());
     const std::vector<PlaneObservation> seen = seen_on(out.vertices, targets, target);
     if (seen.empty()) break;

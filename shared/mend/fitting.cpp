@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "parts/base/parallel.h"
+#include "parts/base/tasks.h"
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/slits.h"
 
@@ -68,14 +69,8 @@ void ModelFitter::bring_first(int count, Progress& progress) {
   std::vector<int> missing;
   for (int m = 0; m < count; ++m)
     if (!brought_[m].done) missing.push_back(m);
-  // In bands of the cores, so that cancelling waits for one band only.
-  const std::size_t band = std::size_t(thread_count(options_.threads));
-  for (std::size_t first = 0; first < missing.size(); first += band) {
-    progress.at(double(first) / double(missing.size()));
-    parallel_for(long(std::min(band, missing.size() - first)), options_.threads, [&](long begin, long end) {
-      for (long i = begin; i < end; ++i) bring(missing[first + i]);
-    });
-  }
+  run_tasks(int(missing.size()), thread_count(options_.threads), progress,
+            [&](int i, const Poll&) { bring(missing[std::size_t(i)]); });
 }
 
 void ModelFitter::blend(Fit& fit, Progress& progress) {
@@ -106,7 +101,6 @@ Fit ModelFitter::operator()(int model, Progress& progress) {
   f.mesh = own.posed.mesh, f.fitted = own.fitted;
   if (f.mesh.faces.empty() || target_.empty()) return f;
   f.mesh.vertices = own.posed.fitted;
-  progress.stage("Blending the models", 50, 100);
   if (blends()) blend(f, progress);
   if (!f.mesh.vertex_normal.empty()) mesh::update_normals(f.mesh);
   return f;

@@ -150,6 +150,7 @@ int main(int argc, char** argv) {
     Table table(kind.name + ", " + bench::count(kind.meshes[0].face_count()) + " faces: placements found from " +
                     std::to_string(runs) + " random starts",
                 {"Task", "Found", "Degrees off", "Seconds", "CPU seconds", "Longest silence"});
+    int all_found = 0, all_runs = 0;
     for (const Task& task : kTasks) {
       // Bodies have other poses, and the generated shapes other forms: no rigid motion is right.
       if (task.other && !kind.same_vertices) continue;
@@ -165,10 +166,12 @@ int main(int argc, char** argv) {
         sum.wall += t.times.wall, sum.cpu += t.times.cpu;
         gap = std::max(gap, t.gap);
       }
+      all_found += found, all_runs += runs;
       std::nth_element(degrees.begin(), degrees.begin() + runs / 2, degrees.end());
       table.row({task.name, std::to_string(found) + " / " + std::to_string(runs), text(degrees[runs / 2], 2),
                  text(sum.wall / runs), text(sum.cpu / runs), text(gap, 2)});
     }
+    figure("align: " + kind.name + ", found", Better::Higher, double(all_found) / all_runs);
     table.note("Found: within 1 % of the size; another one: turned less than 10°. Degrees: median; seconds: mean.");
   }
 }

@@ -132,8 +132,10 @@ void depth(int every) {
           score.add(gradient_correlation(r.color, query.image, query.mask),
                     gradient_correlation(pasted(others.get(k, {}), query.mask), query.image, query.mask), cpu);
     }
-    table.row(
-        score.cells(std::string(name) + ", " + std::to_string(examples) + (examples == 1 ? " example" : " examples")));
+    const std::string what =
+        std::string(name) + ", " + std::to_string(examples) + (examples == 1 ? " example" : " examples");
+    table.row(score.cells(what));
+    figure("colour of a depth map: " + what + ", correlation", Better::Higher, score.ours / score.count);
   }
   table.note("Correlation of gradients with those of the true image-map, after matching each channel affinely.");
   table.note("Faulty: features sit no better than those of the most similar example, pasted centroid on centroid.");
@@ -196,6 +198,7 @@ void meshes(int every) {
       score.add(ours, nearest, cpu);
     }
     table.row(score.cells(name));
+    figure(std::string("colour of a mesh: ") + name + ", correlation", Better::Higher, score.ours / score.count);
   }
 }
 

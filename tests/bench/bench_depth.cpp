@@ -42,6 +42,8 @@ void accuracy(int every) {
                text(s.ours.offset / s.nearest.offset), share(s.ours.scale), text(s.ours.scale / s.mean.scale),
                text(s.ours.scale / s.nearest.scale), text(s.ours.angle), text(s.mean.angle), text(s.nearest.angle),
                share(s.back.offset), text(s.back.offset / s.back_mean.offset), text(s.wall), text(s.cpu)});
+    figure(std::string("depth: ") + name + ", error of the mean's", Better::Lower, s.ours.offset / s.mean.offset);
+    figure(std::string("depth: ") + name + ", normals of the mean's", Better::Lower, s.ours.angle / s.mean.angle);
   }
   table.note("mean: of all others, centroids aligned; nearest: the other whose image is most like the query's.");
 }
@@ -66,6 +68,8 @@ void views(int every) {
     }
     table.row({known ? "known" : "searched", count(s.count), count(s.found), text(s.angle), share(s.ours.offset),
                text(s.ours.offset / s.mean.offset), text(s.ours.offset / s.nearest.offset), text(s.wall), text(s.cpu)});
+    figure(std::string("depth: view ") + (known ? "known" : "searched") + ", error of the mean's", Better::Lower,
+           s.ours.offset / s.mean.offset);
   }
 }
 
@@ -92,6 +96,8 @@ void lumps(int every) {
   const auto row = [&](const std::string& name, const Score& s) {
     table.row({name, share(s.ours.offset), text(s.ours.offset / s.mean.offset), text(s.ours.angle), text(s.mean.angle),
                text(s.ours.roughness), text(s.mean.roughness), text(s.cpu)});
+    figure("depth: " + name + ", roughness of the truth's", Better::Lower, s.ours.roughness);
+    figure("depth: " + name + ", normals of the mean's", Better::Lower, s.ours.angle / s.mean.angle);
   };
   depth::DepthOptions options;
   if (std::filesystem::exists(std::string(PARTS_DATA) + "/head_scan")) {

@@ -202,6 +202,9 @@ void Bench::measure(const MemberClass& members, const DamageCase& what, Table& h
     if (value("each", "0") == "1")
       std::fprintf(stderr, "%s: %.3g of %.3g\n", name.c_str(), ours.all / unit, base.all / unit);
   }
+  figure((hole ? "fill: " : "restore: ") + members.name + ", " + what.name +
+             (hole ? ", error of the best filler's" : ", error of the damage"),
+         Better::Lower, median(ratio));
   const auto all = [](const std::vector<double>& v) { return v.empty() ? std::string("-") : text(median(v)); };
   std::vector<std::string> row{what.name, std::to_string(ratio.size())};
   if (hole)

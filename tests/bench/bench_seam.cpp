@@ -134,6 +134,7 @@ int main(int argc, char** argv) {
         }
         const std::vector<double>& f = c.figures;
         j[cut == cut::Cut::Thesis] = f[kJ];
+        figure("seam: " + scene.name + ", J of " + name, Better::Lower, f[kJ]);
         table.row({scene.name, name, text(f[kJ]), text(f[kGap]), text(f[kLength]), text(f[kTurn]), text(f[kUnfaced]),
                    beside(f[kPieces], a.components, b.components),
                    beside(f[kLoops], a.boundary_loops, b.boundary_loops), count(f[kBad]),

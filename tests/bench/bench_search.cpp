@@ -143,6 +143,7 @@ void measure(const Class& c, const std::vector<Task>& tasks, int most, const fs:
                    fs::path(c.files[std::size_t(f.model)]).stem().string() + ", error " + text(f.error));
     }
     for (auto* v : {&errors, &wall, &cpu}) std::sort(v->begin(), v->end());
+    figure("search: " + c.name + ", " + task.name + ", right", Better::Higher, double(right) / n);
     table.row({task.name, std::to_string(right) + " of " + std::to_string(n), text(errors[n / 2]),
                text(errors[n * 9 / 10]), text(errors.back()), text(wall[n / 2]), text(cpu[n / 2])});
   }

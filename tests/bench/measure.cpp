@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 
@@ -41,6 +42,13 @@ std::size_t width(const std::string& s) {
 Stopwatch::Stopwatch() : wall_(clock_seconds(CLOCK_MONOTONIC)), cpu_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)) {}
 double Stopwatch::wall() const { return clock_seconds(CLOCK_MONOTONIC) - wall_; }
 double Stopwatch::cpu() const { return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_; }
+
+void figure(const std::string& name, Better better, double value) {
+  const char* file = std::getenv("PARTS_FIGURES");
+  if (!file) return;
+  std::ofstream out(file, std::ios::app);
+  out << '"' << name << "\"," << (better == Better::Lower ? "lower" : "higher") << ',' << text(value, 4) << '\n';
+}
 
 Times best_of(const std::function<void()>& run, int most) {
   Times best{1e300, 1e300};

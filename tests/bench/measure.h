@@ -53,6 +53,12 @@ class Table {
   std::vector<std::string> notes_;
 };
 
+enum class Better { Lower, Higher };
+
+/// Says a figure of accuracy, which does not depend on the machine, to
+/// tools/ratchet: a line `name,lower|higher,value` in the file $PARTS_FIGURES, where that is set.
+void figure(const std::string& name, Better better, double value);
+
 std::string text(double value, int digits = 3);  ///< that many significant digits
 std::string count(double value);                 ///< "12,345"
 std::string ratio(double value);                 ///< "12.3×"
