@@ -17,7 +17,6 @@ namespace parts {
 
 namespace {
 
-using host::composition_reference;
 using host::cut_of;
 using host::Inputs;
 using host::Layer;
@@ -233,7 +232,7 @@ std::vector<host::Filter> host::filters() {
                    "onto the <b>fixed</b> one by a rigid motion, with a change of size or a reflection where you "
                    "allow it: principal axes give first guesses, iterated closest points refine each, and the best "
                    "match wins.") +
-           composition_reference,
+           host::composition_reference,
        align_parameters, align_layer, false},
       {"Min-Cut: Compose Two Meshes", "compose", Menu::Remeshing,
        std::string("Joins two overlapping models into one, without a visible seam. Place the models so that they "
@@ -242,14 +241,14 @@ std::vector<host::Filter> host::filters() {
                    "lies on the wrong side, stitches the borders and smooths the seam. Faces away from the seam, their "
                    "colours and their textures stay as they are. The marks belong to the surface: move a layer and "
                    "run again without marking anew.") +
-           composition_reference,
+           host::composition_reference,
        compose_parameters, compose_layers},
       {"Min-Cut: Deform by Rigid Parts", "deform", Menu::Deformation,
        std::string("Bends a model where it has joints: arms, necks, tails. Mark some faces that stay where they are "
                    "and some that move (the upper arm and the hand); the moving ones are turned, shifted, scaled or "
                    "mirrored about a pivot (the elbow), and a minimal cut finds where the moved model continues the "
                    "unmoved one. Several frames make an animation, one layer each.") +
-           composition_reference,
+           host::composition_reference,
        deform_parameters, deform_layer},
   };
 }

@@ -13,7 +13,6 @@ namespace parts {
 
 namespace {
 
-using host::composition_reference;
 using host::Inputs;
 using host::Layer;
 using host::log_value;
@@ -172,20 +171,20 @@ std::vector<host::Filter> host::filters() {
        std::string("Searches a database of complete models for the surfaces most like the one around the selection, a "
                    "hole or a box, wherever and however large they are in their models, and adds the best ones as "
                    "layers, placed on the scan.") +
-           composition_reference,
+           host::composition_reference,
        find_parameters, find},
       {"Database: Restore Surface", "restore", Menu::Remeshing,
        std::string("Replaces scars, dents and broken parts by surfaces of complete models of the same kind. Select "
                    "the damaged faces, or give a box around them. The most similar surface of the database is found "
                    "by what is still good around the flaw, fitted to it, and put in its place along the cut where "
                    "both are closest. Faces outside the region stay as they are.") +
-           composition_reference,
+           host::composition_reference,
        restore_parameters, restore},
       {"Database: Fill Hole", "fill_hole", Menu::Remeshing,
        std::string("Fills holes with surfaces of complete models of the same kind: a face gets a nose, not a lid. The "
                    "holes beside the selected faces are filled, or all where none is selected, each from its own best "
                    "match; or those in a box. The scan stays as it is, to the rim; the new faces are selected.") +
-           composition_reference,
+           host::composition_reference,
        fill_parameters, fill},
   };
 }

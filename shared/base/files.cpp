@@ -81,13 +81,11 @@ fs::path write_draft(const fs::path& target, std::string_view bytes) {
   struct stat old {};
   const bool replaces = ::lstat(target.c_str(), &old) == 0 && S_ISREG(old.st_mode);
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const fs::path draft = folder / random_name();
+    fs::path draft = folder / random_name();
     Descriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
     if (!file && errno == EEXIST) continue;
     if (!file) return {};
-    if (replaces && ::fchmod(file.get(), old.st_mode & 0777) != 0) {
-      // A file system without modes.
-    }
+    if (replaces) ::fchmod(file.get(), old.st_mode & 0777);  // fails on file systems without modes
     const bool whole = write_all(file.get(), bytes);
     if (file.close() && whole) return draft;
     ::unlink(draft.c_str());
