@@ -73,7 +73,8 @@ VoxelLabels thesis_cut(const JointVoxels& voxels) {
   // Back to the thesis' unit: an intersection edge costs 1/(10k).
   long k = 0;
   for (int p = 0; p < n; ++p) k += voxels.both(p);
-  cut.cost = double(flow / boundary_weight) + double(flow % boundary_weight) / (10.0 * double(std::max(k, 1L)));
+  const std::int64_t boundary = flow / boundary_weight;
+  cut.cost = double(boundary) + double(flow % boundary_weight) / (10.0 * double(std::max(k, 1L)));
   // Ties go to B, which leaves the cut nearest to A's constraint.
   const auto label = [&](int node) {
     return std::int8_t(graph.what_segment(node, FlowGraph::SINK) == FlowGraph::SOURCE ? VoxelLabels::kA

@@ -119,6 +119,9 @@ void take_kind_of_colors(const Mesh& scan, Mesh& model) {
     }
     model.vertex_color.clear();
     drop_texture(model);
+  } else {
+    model.vertex_color.clear(), model.face_color.clear();
+    drop_texture(model);
   }
 }
 

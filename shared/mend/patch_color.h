@@ -10,7 +10,7 @@ namespace parts::mend {
 /// Gives a model colours of the kind that a scan has: one with vertex or face
 /// colours and no texture gets the model's texture sampled into such. Where the
 /// scan has a texture, a model with vertex or face colours keeps them, as
-/// vertex colours. A scan without colours takes the model's as they are.
+/// vertex colours. A scan without colours takes none.
 void take_kind_of_colors(const Mesh& scan, Mesh& model);
 
 /// Vertex colours from a mesh's texture or face colours, or nothing if it has neither.

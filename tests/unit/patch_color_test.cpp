@@ -64,6 +64,24 @@ TEST(PatchColor, ATexturedModelGivesVertexColoursToAScanThatHasSuch) {
   for (int v : of_the_patch(matched)) expect_near(matched.mesh.vertex_color[v], kDark, 1);
 }
 
+TEST(PatchColor, AScanWithoutColoursGetsNone) {
+  const NoseHole n;
+  const TexturedModel model;
+  std::vector<mend::PlacedModel> painted_model = similar_bust();
+  Mesh& m = painted_model[0].mesh;
+  m.wedges.clear(), m.textures.clear();
+  m.vertex_color.assign(m.vertices.size(), kSkin);
+  for (const auto& models : {model.models, painted_model}) {
+    Mesh scan = n.scan;
+    scan.wedges.clear(), scan.textures.clear(), scan.vertex_color.clear(), scan.face_color.clear();
+    const Mesh mesh = fill_quietly(scan, models).mesh;
+    EXPECT_GT(mesh.face_count(), scan.face_count());
+    EXPECT_TRUE(mesh.vertex_color.empty());
+    EXPECT_TRUE(mesh.face_color.empty());
+    EXPECT_TRUE(mesh.textures.empty());
+  }
+}
+
 TEST(PatchColor, WhatDiffersAtTheRimFadesOverThePatch) {
   const NoseHole n;
   const TexturedModel model;
