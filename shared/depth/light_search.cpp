@@ -91,7 +91,7 @@ examples::Light find_light(const synthesis::PatchImage& query, Gallery& gallery,
     for (int i = 0; i < (slant == 0 ? 1 : slant == 35 ? 6 : 8); ++i)
       offer({direction(slant, slant == 35 ? 60 * i : 45 * i), present.ambient});
   const examples::Light coarse = best;
-  if (coarse.direction == present.direction) return present;
+  if (coarse.direction == present.direction) return best;
   const Vec3 side = coarse.direction.unitOrthogonal(), up = coarse.direction.cross(side);
   for (int i = 0; i < 6; ++i)
     offer({coarse.direction + 0.32 * (std::cos(i * EIGEN_PI / 3) * side + std::sin(i * EIGEN_PI / 3) * up),
