@@ -13,12 +13,14 @@ def mlx(*words):
 
 class MlxTool(unittest.TestCase):
     def test_a_script_by_defaults_is_the_template(self):
+        names = mlx("--list").stdout
         for path in (lib.ROOT / "scripts").glob("*.mlx"):
             made = xml.fromstring(mlx(path.stem).stdout.split("\n", 1)[1])
             as_given = [(p.get("name"), p.attrib) for p in xml.parse(path).getroot().iter("Param")]
             self.assertEqual([(p.get("name"), p.attrib) for p in made.iter("Param")], as_given)
-            self.assertTrue(all(name in mlx("--help", path.stem).stdout for name, _ in as_given))
-            self.assertIn(path.stem, mlx("--list").stdout)
+            explained = mlx("--help", path.stem).stdout
+            self.assertTrue(all(name in explained for name, _ in as_given))
+            self.assertIn(path.stem, names)
 
     def test_values_of_a_wrong_type_are_refused_in_a_sentence(self):
         for value in ("Levels=x", "Candidates=3.5", "Region=Nowhere", "Region=9", "RegionMin=1,2", "RegionMin=1,2,nan",
