@@ -15,7 +15,8 @@ format_packages=(clang-format-14)
 tidy_packages=(clang-tidy-14)
 coverage_packages=(gcovr)
 reference_packages=(doxygen)
-fuzz_packages=(clang-14)
+fuzz_packages=(clang-14 libclang-rt-14-dev)
+picture_packages=(imagemagick)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

@@ -275,10 +275,49 @@ void give_way(Mesh& mesh, const std::vector<int>& free, const std::vector<Vec3>&
   mesh.vertices = std::move(best);
 }
 
-double longest_move(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-  double longest = 0;
-  for (std::size_t v = 0; v < from.size(); ++v) longest = std::max(longest, (to[v] - from[v]).norm());
-  return longest;
+/// Bends the neighbourhood until its seam hardly gets any flatter.
+/// @return the vertices that went too far, if any did
+std::vector<int> give_way_in_rounds(Neighbourhood& near, const std::vector<Vec3>& given, double farthest,
+                                    SeamBlend& report) {
+  // A sharp crease is no small one: its normals are not known before it is flatter.
+  constexpr int kRounds = 6;
+  constexpr double kLittle = 0.9;
+  for (int round = 0; round < kRounds; ++round) {
+    const Membrane membrane(near.mesh, near.seam, near.fixed, near.reach);
+    const std::vector<Vec3> offsets = membrane.solve();
+    if (offsets.empty()) break;
+    const std::vector<Vec3> before = near.mesh.vertices;
+    give_way(near.mesh, membrane.free(), offsets);
+    const double after = share(seam_angles(near.mesh, near.seam), 0.5);
+    std::vector<int> far;
+    for (int v = 0; v < near.mesh.vertex_count(); ++v)
+      if ((near.mesh.vertices[v] - given[v]).norm() > farthest) far.push_back(v);
+    if (!far.empty()) return far;
+    if (round > 0 && after > report.angle_after) {
+      near.mesh.vertices = before;
+      break;
+    }
+    const bool enough = round > 0 && after > kLittle * report.angle_after;
+    report.moved = int(offsets.size()), report.angle_after = after;
+    if (enough) break;
+  }
+  return {};
+}
+
+/// Fixes vertices and those next to them. @return false if that is more than half of the seam
+bool hold(Neighbourhood& near, const std::vector<int>& vertices) {
+  std::vector<char> at(near.mesh.vertices.size(), 0);
+  for (int v : vertices) at[v] = 1;
+  for (const Triangle& f : near.mesh.faces)
+    if (at[f[0]] == 1 || at[f[1]] == 1 || at[f[2]] == 1)
+      for (int v : f)
+        if (!at[v]) at[v] = 2;
+  long seam = 0, held = 0;
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    near.fixed[v] |= at[v] != 0;
+    seam += near.seam[v] != 0, held += near.seam[v] && near.fixed[v];
+  }
+  return 2 * held <= seam;
 }
 
 }  // namespace
@@ -295,31 +334,20 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   if (const Band band = band_around(mesh, seam, report.distance); band.vertices.size() > kMost)
     report.distance = band.away[band.vertices[kMost]];
   Neighbourhood near(mesh, seam, fixed, report.distance);
-  // What has to go farther than that is no step or crease of a seam, but the fork of two limbs or the brim of a hat.
+  // What has to go farther than that is no step or crease of a seam, but the fork of two limbs or the brim of a hat:
+  // it stays as it is.
   constexpr double kFarthest = 0.5;
   const double farthest = kFarthest * report.distance + gap;
   const std::vector<Vec3> given = near.mesh.vertices;
-  // A sharp crease is no small one: its normals are not known before it is flatter.
-  constexpr int kRounds = 6;
-  constexpr double kLittle = 0.9;
-  for (int round = 0; round < kRounds; ++round) {
-    const Membrane membrane(near.mesh, near.seam, near.fixed, near.reach);
-    const std::vector<Vec3> offsets = membrane.solve();
-    if (offsets.empty()) break;
-    const std::vector<Vec3> before = near.mesh.vertices;
-    give_way(near.mesh, membrane.free(), offsets);
-    const double after = share(seam_angles(near.mesh, near.seam), 0.5);
-    if (longest_move(given, near.mesh.vertices) > farthest) {
+  constexpr int kAttempts = 5;
+  for (int attempt = 0;; ++attempt) {
+    near.mesh.vertices = given;
+    const std::vector<int> forks = give_way_in_rounds(near, given, farthest, report);
+    if (forks.empty() && report.angle_after <= report.angle_before) break;
+    if (forks.empty() || attempt == kAttempts || !hold(near, forks)) {
       report.moved = 0, report.angle_after = report.angle_before;
       return report;
     }
-    if (round > 0 && after > report.angle_after) {
-      near.mesh.vertices = before;
-      break;
-    }
-    const bool enough = round > 0 && after > kLittle * report.angle_after;
-    report.moved = int(offsets.size()), report.angle_after = after;
-    if (enough) break;
   }
   for (std::size_t i = 0; i < near.vertex.size(); ++i) mesh.vertices[near.vertex[i]] = near.mesh.vertices[i];
   return report;

@@ -5,6 +5,7 @@
 
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/pinches.h"
+#include "parts/seam/band.h"
 #include "parts/seam/contours.h"
 #include "parts/seam/seam.h"
 #include "parts/seam/untangle.h"
@@ -91,11 +92,12 @@ Shape shape_of(const Mesh& m) { return {m.vertices, m.faces, m.wedges}; }
 void set_shape(Mesh& m, const Shape& s) { m.vertices = s.vertices, m.faces = s.faces, m.wedges = s.wedges; }
 
 /// Blends, smooths and untangles. @return pairs of faces at the seam that cross
-long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, const SeamSmoothing& smoothing,
-                int threads) {
+/// @param held  per vertex: does not give way
+std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& before, const std::vector<char>& held,
+                                           double distance, const SeamSmoothing& smoothing, int threads) {
   j.blend = {};
   if (smoothing.blend) {
-    j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+    j.blend = blend_seam(j.mesh, j.seam, held, smoothing.blend_distance, j.gap);
     flip_seam(j.mesh, j.seam, j.fixed);
   }
   smooth_seam(j.mesh, j.seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
@@ -103,7 +105,16 @@ long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, con
   for (std::size_t v = 0; v < movable.size(); ++v)
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
   constexpr int kRounds = 15;
-  return untangle(j.mesh, movable, kRounds, threads);
+  return untangle(j.mesh, movable, j.seam, before, kRounds, threads);
+}
+
+/// Holds the vertices of faces, and those within a distance of them along the surface.
+void hold(const Mesh& mesh, const std::vector<std::array<int, 2>>& pairs, double distance, std::vector<char>& held) {
+  std::vector<char> at(mesh.vertices.size(), 0);
+  for (const auto& pair : pairs)
+    for (int f : pair)
+      for (int v : mesh.faces[f]) at[v] = 1;
+  for (int v : band_around(mesh, at, distance).vertices) held[v] = 1;
 }
 
 }  // namespace
@@ -118,22 +129,24 @@ long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smo
   if (!thesis) even_seam(j.mesh, j.seam, j.fixed, 8);
   const double distance = smoothing.distance > 0 ? smoothing.distance : 2 * voxel;
   const Shape stitched = shape_of(j.mesh);
-  long crossings = smooth_all(j, before, distance, smoothing, threads);
-  // Where surfaces that give way run into each other they give way less, or not.
+  constexpr int kHolding = 4;
+  std::vector<char> held = j.fixed;
+  long crossings = -1;
+  Shape best;
+  SeamBlend blend;
+  // Where surfaces that give way run into each other they do not; then they give way less, or not at all.
   SeamSmoothing less = smoothing;
-  less.blend_distance = 0.5 * j.blend.distance;
-  for (const bool at_all : {true, false}) {
-    if (crossings == 0 || j.blend.moved == 0) break;
-    const Shape best = shape_of(j.mesh);
-    const SeamBlend blend = j.blend;
+  for (int attempt = 0; attempt < kHolding + 2 && crossings != 0; ++attempt) {
+    if (attempt == kHolding) less.blend_distance = 0.5 * blend.distance;
+    if (attempt > kHolding) less.blend = false;
     set_shape(j.mesh, stitched);
-    less.blend = at_all;
-    const long c = smooth_all(j, before, distance, less, threads);
-    if (c < crossings)
-      crossings = c;
-    else
-      set_shape(j.mesh, best), j.blend = blend;
+    const std::vector<std::array<int, 2>> pairs = smooth_all(j, before, held, distance, less, threads);
+    if (crossings < 0 || long(pairs.size()) < crossings)
+      crossings = long(pairs.size()), best = shape_of(j.mesh), blend = j.blend;
+    if (j.blend.moved == 0) break;
+    hold(j.mesh, pairs, 0.5 * j.blend.distance, held);
   }
+  set_shape(j.mesh, best), j.blend = blend;
   mend_normals(j, before);
   return crossings;
 }

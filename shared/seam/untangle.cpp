@@ -69,9 +69,43 @@ class Neighbourhood {
   std::vector<int> faces_;
 };
 
+/// Pairs of faces that lie folded onto each other: what is left of a strip that ran back on itself.
+std::vector<std::array<int, 2>> folded(const Mesh& mesh, const std::vector<std::array<int, 2>>& beside) {
+  constexpr double kFolded = -0.34;  // the cosine between the normals: 110 degrees
+  std::vector<std::array<int, 2>> folds;
+  for (const auto& [f, g] : beside) {
+    const Vec3 a = mesh.area_vector(f), b = mesh.area_vector(g);
+    if (a.dot(b) < kFolded * a.norm() * b.norm()) folds.push_back({f, g});
+  }
+  return folds;
+}
+
+/// What crossed or was folded already, away from the seam: it is the inputs' own. Sorted.
+std::vector<std::array<int, 2>> flaws_before(Mesh& mesh, const std::vector<char>& asked,
+                                             const std::vector<std::array<int, 2>>& beside,
+                                             const std::vector<char>& seam, const std::vector<Vec3>& before, long limit,
+                                             int threads) {
+  const std::vector<Vec3> now = mesh.vertices;
+  mesh.vertices = before;
+  std::vector<std::array<int, 2>> own = Neighbourhood(mesh, asked).crossings(limit, threads);
+  const std::vector<std::array<int, 2>> folds = folded(mesh, beside);
+  mesh.vertices = now;
+  own.insert(own.end(), folds.begin(), folds.end());
+  const auto at_seam = [&](const std::array<int, 2>& pair) {
+    for (int f : pair)
+      for (int v : mesh.faces[f])
+        if (seam[v]) return true;
+    return false;
+  };
+  own.erase(std::remove_if(own.begin(), own.end(), at_seam), own.end());
+  std::sort(own.begin(), own.end());
+  return own;
+}
+
 }  // namespace
 
-long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int threads) {
+std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& movable, const std::vector<char>& seam,
+                                         const std::vector<Vec3>& before, int rounds, int threads) {
   std::vector<char> asked(mesh.faces.size(), 0);
   std::vector<std::vector<int>> around(mesh.vertices.size());
   std::vector<char> free = movable;
@@ -79,22 +113,38 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
     for (int v : mesh.faces[f]) asked[f] |= movable[v];
   Mesh zone;
   zone.vertices.resize(mesh.vertices.size());
+  std::vector<int> whole;  // per face of the zone
   for (int f = 0; f < mesh.face_count(); ++f)
-    if (asked[f]) zone.faces.push_back(mesh.faces[f]);
+    if (asked[f]) zone.faces.push_back(mesh.faces[f]), whole.push_back(f);
+  std::vector<std::array<int, 2>> beside;
   mesh::for_each_mesh_edge(mesh::sorted_half_edges(zone), [&](auto first, auto last) {
     around[first->from].push_back(first->to), around[first->to].push_back(first->from);
     // The zone's own border runs along vertices that do not move anyway.
-    if (last - first != 2) free[first->from] = free[first->to] = 0;
+    if (last - first != 2)
+      free[first->from] = free[first->to] = 0;
+    else
+      beside.push_back({whole[first->face], whole[first[1].face]});
   });
 
   // More pairs than that are no fold at a seam: relaxing a few vertices parts nothing, and takes for ever.
   const long hopeless = 1000 + 4 * std::count(asked.begin(), asked.end(), 1);
+  const std::vector<std::array<int, 2>> own = flaws_before(mesh, asked, beside, seam, before, hopeless, threads);
+  const auto drop_own = [&own](std::vector<std::array<int, 2>>& pairs) {
+    const auto is_own = [&own](const auto& pair) { return std::binary_search(own.begin(), own.end(), pair); };
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_own), pairs.end());
+  };
+  drop_own(beside);
   std::vector<Vec3> best;
-  long least = -1;
+  std::vector<std::array<int, 2>> left;
+  std::pair<long, std::size_t> least(-1, 0);  // crossings, folds
   for (int round = 0;; ++round) {
-    const std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(hopeless, threads);
+    std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(hopeless + long(own.size()), threads);
+    drop_own(pairs);
     const long crossings = std::min(long(pairs.size()), hopeless);
-    if (least < 0 || crossings < least) least = crossings, best = mesh.vertices;
+    const std::vector<std::array<int, 2>> folds = folded(mesh, beside);
+    const std::pair<long, std::size_t> flaws(crossings, folds.size());
+    if (least.first < 0 || flaws < least) least = flaws, best = mesh.vertices, left = pairs;
+    pairs.insert(pairs.end(), folds.begin(), folds.end());
     if (pairs.empty() || round == rounds || crossings == hopeless) break;
     std::vector<char> moving(mesh.vertices.size(), 0);
     for (const auto& pair : pairs)
@@ -119,7 +169,7 @@ long untangle(Mesh& mesh, const std::vector<char>& movable, int rounds, int thre
     }
   }
   mesh.vertices = best;
-  return least;
+  return left;
 }
 
 }  // namespace parts::seam
