@@ -340,10 +340,11 @@ SeamBlend blend_seam(Mesh& mesh, const std::vector<char>& seam, const std::vecto
   const double farthest = kFarthest * report.distance + gap;
   const std::vector<Vec3> given = near.mesh.vertices;
   constexpr int kAttempts = 5;
+  constexpr double kWorthIt = 0.8;  // less than a fifth of the crease is not worth moving the surfaces
   for (int attempt = 0;; ++attempt) {
     near.mesh.vertices = given;
     const std::vector<int> forks = give_way_in_rounds(near, given, farthest, report);
-    if (forks.empty() && report.angle_after <= report.angle_before) break;
+    if (forks.empty() && report.angle_after <= kWorthIt * report.angle_before) break;
     if (forks.empty() || attempt == kAttempts || !hold(near, forks)) {
       report.moved = 0, report.angle_after = report.angle_before;
       return report;

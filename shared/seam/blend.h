@@ -24,7 +24,8 @@ struct SeamBlend {
 /// Beyond the distance, along the surface, vertices stay as they are, bit for
 /// bit, and so do fixed ones. Where a vertex would have to go farther than half the
 /// distance and the gap the surfaces fork, and are meant to: they stay as they
-/// are there, and everywhere if that is most of the seam.
+/// are there, and everywhere if that is most of the seam or the crease hardly
+/// gets smaller.
 /// @param seam      per vertex: not 0 on the seam
 /// @param fixed     per vertex: 1 stays where it is
 /// @param distance  world units, nothing moves if it is less than an edge; 0 = chosen from the angle across the

@@ -98,7 +98,7 @@ std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& b
   j.blend = {};
   if (smoothing.blend) {
     j.blend = blend_seam(j.mesh, j.seam, held, smoothing.blend_distance, j.gap);
-    flip_seam(j.mesh, j.seam, j.fixed);
+    if (j.blend.moved > 0) flip_seam(j.mesh, j.seam, j.fixed);
   }
   smooth_seam(j.mesh, j.seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);
