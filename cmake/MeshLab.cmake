@@ -19,7 +19,7 @@ find_package(Qt5 REQUIRED COMPONENTS Core Gui Widgets OpenGL Xml)
 find_package(OpenGL REQUIRED)
 find_library(MESHLAB_COMMON_LIBRARY meshlab-common PATH_SUFFIXES meshlab REQUIRED)
 find_program(MESHLAB_PROGRAM meshlab REQUIRED)
-find_program(MESHLAB_SERVER_PROGRAM meshlabserver REQUIRED)
+find_program(MESHLAB_SERVER_PROGRAM meshlabserver)  # of 2020.09 alone
 mark_as_advanced(MESHLAB_COMMON_LIBRARY MESHLAB_PROGRAM MESHLAB_SERVER_PROGRAM)
 
 get_filename_component(meshlab_lib_dir "${MESHLAB_COMMON_LIBRARY}" DIRECTORY)        # /usr/lib/<triplet>/meshlab
@@ -27,10 +27,21 @@ get_filename_component(meshlab_bin_dir "${MESHLAB_PROGRAM}" DIRECTORY)
 get_filename_component(meshlab_prefix "${meshlab_bin_dir}" DIRECTORY)                # /usr
 set(MESHLAB_PLUGIN_DIR "${meshlab_lib_dir}/plugins" CACHE PATH "Where 'cmake --install' puts the plugins")
 
-# MeshLab's API as Debian built it: single precision.
+# Hosts of one generation share an API, and a folder shared/host/meshlab<generation>.
+if(EXISTS "${MESHLAB_HEADERS}/src/common/interfaces.h")
+  set(MESHLAB_GENERATION 2020)
+else()
+  set(MESHLAB_GENERATION 2022)
+endif()
+file(STRINGS "${MESHLAB_HEADERS}/ML_VERSION" MESHLAB_VERSION LIMIT_COUNT 1)  # the host refuses plugins for another
+set(MESHLAB_SCALAR float CACHE STRING "The host's numbers: float as Debian builds it, double for others' builds")
+message(STATUS "MeshLab ${MESHLAB_VERSION} (${MESHLAB_SCALAR}), API of ${MESHLAB_GENERATION}")
+
+# MeshLab's API.
 add_library(deps::meshlab INTERFACE IMPORTED GLOBAL)
 target_include_directories(deps::meshlab SYSTEM INTERFACE "${MESHLAB_HEADERS}/src" "${MESHLAB_HEADERS}/vcglib")
-target_compile_definitions(deps::meshlab INTERFACE MESHLAB_SCALAR=float)
+target_compile_definitions(deps::meshlab INTERFACE
+  "MESHLAB_SCALAR=${MESHLAB_SCALAR}" "MESHLAB_VERSION=${MESHLAB_VERSION}")
 target_link_libraries(deps::meshlab INTERFACE
   "${MESHLAB_COMMON_LIBRARY}" deps::eigen Qt5::Core Qt5::Gui Qt5::Widgets Qt5::OpenGL Qt5::Xml OpenGL::GL)
 
@@ -41,11 +52,18 @@ file(RELATIVE_PATH meshlab_lib_subdir "${meshlab_prefix}" "${meshlab_lib_dir}")
 set(stage_lib_dir "${PARTS_STAGE_DIR}/${meshlab_lib_subdir}")
 set(PARTS_STAGE_PLUGIN_DIR "${stage_lib_dir}/plugins")
 
-file(COPY "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" DESTINATION "${PARTS_STAGE_DIR}/bin")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-  "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" "${meshlab_lib_dir}/plugins")
+set(programs "${MESHLAB_PROGRAM}")
+if(MESHLAB_SERVER_PROGRAM)
+  list(APPEND programs "${MESHLAB_SERVER_PROGRAM}")
+endif()
+file(COPY ${programs} DESTINATION "${PARTS_STAGE_DIR}/bin")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${programs} "${meshlab_lib_dir}/plugins")
 file(MAKE_DIRECTORY "${PARTS_STAGE_PLUGIN_DIR}" "${PARTS_STAGE_DIR}/share")
-file(CREATE_LINK "${MESHLAB_COMMON_LIBRARY}" "${stage_lib_dir}/libmeshlab-common.so" SYMBOLIC)
+file(GLOB host_libraries "${meshlab_lib_dir}/lib*.so*")
+foreach(library IN LISTS host_libraries)
+  get_filename_component(name "${library}" NAME)
+  file(CREATE_LINK "${library}" "${stage_lib_dir}/${name}" SYMBOLIC)
+endforeach()
 file(CREATE_LINK "${meshlab_prefix}/share/meshlab" "${PARTS_STAGE_DIR}/share/meshlab" SYMBOLIC)
 
 file(GLOB staged "${PARTS_STAGE_PLUGIN_DIR}/*")

@@ -15,7 +15,10 @@ version=$(dpkg-query -W -f '${source:Version}' meshlab 2>/dev/null) ||
   fail "MeshLab is not installed; run './run setup' first."
 cache=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/meshlab-headers
 headers=$cache/$version
-if [[ -f $headers/src/common/interfaces.h && -d $headers/vcglib/vcg ]]; then
+# Plugins say which version they are for; Debian's is made of it and a suffix.
+note_version() { echo "${version%%[+~-]*}" >"$1/ML_VERSION"; }
+if [[ -d $headers/src/common && -d $headers/vcglib/vcg ]]; then
+  [[ -f $headers/ML_VERSION ]] || note_version "$headers"
   echo "$headers"
   exit 0
 fi
@@ -45,16 +48,22 @@ private_apt=(apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourcep
 
 say "Fetching MeshLab's headers from Debian's source package meshlab $version (once, about a minute) ..."
 "${private_apt[@]}" update >"$work/log" 2>&1 || true  # a vendor's list may fail, Debian's counts
-(cd "$work/download" && "${private_apt[@]}" source --download-only "meshlab=$version") >>"$work/log" 2>&1 || {
+# The upstream archive is enough: Debian's patches leave the headers as they are.
+(cd "$work/download" && "${private_apt[@]}" source --download-only --tar-only "meshlab=$version") >>"$work/log" 2>&1 || {
   grep -E '^(E|W|Err):?' "$work/log" | head -5 >&2
   fail "MeshLab's source package could not be downloaded; check the network, the free disk space and that apt's sources are Debian's, and try again."
 }
-dpkg-source --no-check -x "$work"/download/meshlab_*.dsc "$work/meshlab" >>"$work/log" 2>&1 ||
+mkdir "$work/meshlab"
+tar -C "$work/meshlab" --strip-components=1 -xf "$work"/download/meshlab_*.orig.tar.* >>"$work/log" 2>&1 ||
   fail "MeshLab's source package could not be unpacked in $cache; check the free disk space and try again."
 
 mkdir "$work/headers" "$work/headers/src"
 mv "$work/meshlab/src/common" "$work/headers/src/"
-mv "$work/meshlab/vcglib" "$work/headers/"
+for vcglib in "$work/meshlab/vcglib" "$work/meshlab/src/vcglib"; do  # 2020.09, later
+  [[ ! -d $vcglib/vcg ]] || mv "$vcglib" "$work/headers/"
+done
+[[ -d $work/headers/vcglib ]] || fail "MeshLab's source package $version has no vcglib; this host is not known."
+note_version "$work/headers"
 rm -rf "$headers"
 mv "$work/headers" "$headers"
 echo "$headers"
