@@ -243,7 +243,6 @@ TEST_F(HostPlugin, WarningsComeLast) {
   };
   EXPECT_TRUE(apply());
   EXPECT_EQ(lines_of(log), (Lines{{GLLogStream::FILTER, "cost: 1"}, {GLLogStream::WARNING, "warning: Look here."}}));
-  log.Clear();
   next = [](const Inputs&, Progress& progress) -> Outcome {
     log_value(progress, "warning", "Look here.");
     throw UserError("Do this.");
