@@ -16,6 +16,9 @@ tidy_packages=(clang-tidy-14)
 coverage_packages=(gcovr)
 reference_packages=(doxygen)
 fuzz_packages=(clang-14)
+package_packages=(file)
+root_packages=(debootstrap)
+python_packages=(python3-venv)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

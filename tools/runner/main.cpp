@@ -97,12 +97,18 @@ void Session::set_current_layer(const RichParameterList& given) {
 void Session::run_filter(const QString& name, const RichParameterList& given) {
   const runner::Action filter = runner::find_filter(name);
   if (!filter.plugin && name == "Change the current layer") return set_current_layer(given);
-  if (!filter.plugin) fail("No filter is called \"" + name + "\"; look for its name in MeshLab's menus.");
+  if (!filter.plugin)
+    fail("No filter is called \"" + name + "\"; look for its name in MeshLab's menus." + runner::not_loaded());
   const QString missing = runner::missing_for(filter, document_);
   if (!missing.isEmpty()) fail("The filter needs " + missing + ".");
   const RichParameterList values = values_of(filter, given);
   runner::apply(filter, values, document_, show_progress);
-  for (MeshModel* layer : api::layers_of(document_)) vcg::tri::Allocator<CMeshO>::CompactEveryVector(layer->cm);
+  for (MeshModel* layer : api::layers_of(document_)) {  // as the program meshlab leaves them to the next filter
+    CMeshO& m = layer->cm;
+    vcg::tri::Allocator<CMeshO>::CompactEveryVector(m);
+    m.svn = int(vcg::tri::UpdateSelection<CMeshO>::VertexCount(m));
+    m.sfn = int(vcg::tri::UpdateSelection<CMeshO>::FaceCount(m));
+  }
 }
 
 void Session::run_script(const QString& file) {

@@ -10,6 +10,8 @@
 namespace runner {
 
 void load_plugins();
+/// The host's words on plugins that could not be loaded; empty where all were.
+QString not_loaded();
 
 /// Adds the layers of a mesh file. @param file  absolute
 void open_mesh(const QString& file, MeshDocument& document);

@@ -15,9 +15,14 @@ namespace {
 /// Textures as files for the length of a run, each image once.
 class TextureFiles {
  public:
-  QString file_of(const QImage& image, const QString& name) {
+  /// @param read_from  where the image may have come from
+  QString file_of(const QImage& image, const QString& name, const QString& read_from) {
     for (const auto& [file, known] : known_)
       if (known.image.cacheKey() == image.cacheKey()) return file;
+    if (QFileInfo::exists(read_from) && QImage(read_from) == image) {
+      known_[read_from] = {image, name};
+      return read_from;
+    }
     const QString folder = folder_.filePath(QString::number(known_.size()));
     const QString file = QDir(folder).filePath(QFileInfo(name).completeBaseName() + ".png");
     if (!QDir().mkpath(folder) || !image.save(file, "PNG", 80))  // little effort: it is read once
@@ -72,10 +77,10 @@ void add_plane(const QString& file, RasterModel& raster) { raster.addPlane(new R
 
 std::string texture_file(const MeshModel& layer, const std::string& name) {
   const QImage image = layer.getTexture(name);
-  const QString file = QString::fromStdString(name);
-  if (!image.isNull()) return texture_files()->file_of(image, file).toStdString();
+  const QString texture = QString::fromStdString(name);
   const QString folder = layer.fullName().isEmpty() ? QDir::currentPath() : layer.pathName();
-  return QDir::cleanPath(QDir(folder).absoluteFilePath(file)).toStdString();
+  const QString beside = QDir::cleanPath(QDir(folder).absoluteFilePath(texture));
+  return (image.isNull() ? beside : texture_files()->file_of(image, texture, beside)).toStdString();
 }
 
 void set_textures(const std::vector<std::string>& files, MeshModel& layer) {

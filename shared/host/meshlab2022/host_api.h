@@ -31,8 +31,8 @@ void update_box_and_normals(MeshModel& layer);
 /// Adds an image file as the first plane of a raster layer.
 void add_plane(const QString& file, RasterModel& raster);
 
-/// A file with the image of one of a layer's textures, absolute: the host has
-/// only the image.
+/// A file with the image of one of a layer's textures, absolute: that beside the
+/// mesh where it is still the same, or one made from the image that the host has.
 std::string texture_file(const MeshModel& layer, const std::string& name);
 /// Gives a new layer the textures of these files, absolute, under names that are
 /// plain and unique: the host saves each beside the mesh under its name.

@@ -49,6 +49,22 @@ TEST(Textures, OfAResultHaveTheirNamesAndAreUnique) {
   api::forget_texture_files();
 }
 
+TEST(Textures, ThatAreStillThoseBesideTheMeshAreTheseFiles) {
+  QDir().mkpath("beside");
+  ASSERT_TRUE(image(Qt::red).save("beside/skin.png"));
+  const QString file = QDir("beside").absoluteFilePath("skin.png");
+  MeshDocument document;
+  MeshModel* layer = document.addNewMesh("", "layer");
+  layer->setFileName(QDir("beside").absoluteFilePath("a.ply"));
+  layer->addTexture("skin.png", QImage(file));
+  EXPECT_EQ(QString::fromStdString(api::texture_file(*layer, "skin.png")), file);
+  api::forget_texture_files();
+  EXPECT_TRUE(QFileInfo::exists(file));
+  layer->setTexture("skin.png", image(Qt::blue));  // by a filter of the host
+  EXPECT_NE(QString::fromStdString(api::texture_file(*layer, "skin.png")), file);
+  api::forget_texture_files();
+}
+
 TEST(Textures, WithoutAnImageAreLookedForBesideTheMesh) {
   MeshDocument document;
   MeshModel* layer = document.addNewMesh("", "layer");

@@ -73,6 +73,8 @@ void load_plugins() {
   plugins().loadPlugins(settings);
 }
 
+QString not_loaded() { return {}; }
+
 void open_mesh(const QString& file, MeshDocument& document) {
   if (!QFileInfo(file).isReadable()) fail("The mesh " + file + " cannot be read.");
   read(file, *document.addNewMesh(file, QFileInfo(file).fileName()));

@@ -9,7 +9,6 @@
 #include <wrap/io_trimesh/io_mask.h>
 
 #include <QFileInfo>
-#include <cstdio>
 
 namespace runner {
 
@@ -17,15 +16,22 @@ namespace {
 
 PluginManager& plugins() { return meshlab::pluginManagerInstance(); }
 
+QString& missed_plugins() {
+  static QString words;
+  return words;
+}
+
 }  // namespace
 
 void load_plugins() {
   try {
     plugins().loadPlugins();
   } catch (const MLException& some) {  // the others are there
-    std::fprintf(stderr, "%s\n", some.what());
+    missed_plugins() = some.what();
   }
 }
+
+QString not_loaded() { return missed_plugins().isEmpty() ? "" : "\n" + missed_plugins(); }
 
 void open_mesh(const QString& file, MeshDocument& document) { meshlab::loadMeshWithStandardParameters(file, document); }
 
