@@ -81,11 +81,12 @@ function(add_meshlab_filter name)
 endfunction()
 
 # add_uninstall_target(<plugin>...)
-# The target 'uninstall' takes the plugins out of the system's MeshLab, also
+# The target 'uninstall' takes the plugins and meshlab-script out of the system, also
 # those that an earlier build put there.
 function(add_uninstall_target)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "(.+)" "${MESHLAB_PLUGIN_DIR}/$<TARGET_FILE_NAME:\\1>")
+  list(APPEND files "${meshlab_bin_dir}/meshlab-script")
   set(script "${PROJECT_BINARY_DIR}/uninstall.cmake")
   file(GENERATE OUTPUT "${script}" CONTENT
     "set(files \"${files}\")\ninclude(\"${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake\")\n")

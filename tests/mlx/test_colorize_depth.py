@@ -67,7 +67,7 @@ class ColorizeDepth(lib.MeshCase):
     def test_same_bytes_again(self):
         names = [self.folder / f"same{k}.png" for k in range(2)]
         for name in names:
-            self.colored(ImageFile=name, AddMesh=False)
+            self.colored({}, ImageFile=name, AddMesh=False)
         self.assertEqual(names[0].read_bytes(), names[1].read_bytes())
 
     def test_sentences(self):
