@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_api.h"
 
+#include <common/utilities/load_save.h>
+
 #include <QDir>
 #include <QTemporaryDir>
 #include <map>
@@ -86,9 +88,8 @@ std::string texture_file(const MeshModel& layer, const std::string& name) {
 void set_textures(const std::vector<std::string>& files, MeshModel& layer) {
   for (const std::string& file : files) {
     const TextureFiles::Texture texture = texture_files()->of(QString::fromStdString(file));
-    if (texture.image.isNull())
-      throw UserError("The texture " + file + " cannot be read; put it where the mesh looks for it.");
-    layer.addTexture(free_name(QFileInfo(texture.name), layer), texture.image);
+    layer.addTexture(free_name(QFileInfo(texture.name), layer),
+                     texture.image.isNull() ? meshlab::getDummyTexture() : texture.image);
   }
 }
 

@@ -35,8 +35,8 @@ void add_plane(const QString& file, RasterModel& raster);
 /// mesh where it is still the same, or one made from the image that the host has.
 std::string texture_file(const MeshModel& layer, const std::string& name);
 /// Gives a new layer the textures of these files, absolute, under names that are
-/// plain and unique: the host saves each beside the mesh under its name.
-/// @throws UserError  one cannot be read
+/// plain and unique: the host saves each beside the mesh under its name. What
+/// cannot be read gets the image that the host shows in its place.
 void set_textures(const std::vector<std::string>& files, MeshModel& layer);
 /// Where texture_file() made files: they go. Called at the end of each run.
 void forget_texture_files();
