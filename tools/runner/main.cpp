@@ -5,7 +5,10 @@
 #include <wrap/io_trimesh/io_mask.h>
 
 #include <QApplication>
+#include <QDomDocument>
+#include <QFile>
 #include <QFileInfo>
+#include <algorithm>
 #include <clocale>
 #include <cstdio>
 #include <map>
@@ -111,9 +114,26 @@ void Session::run_filter(const QString& name, const RichParameterList& given) {
   }
 }
 
+/// The host's reader of scripts leaves out a parameter that lacks an attribute, as
+/// a RichEnum does without its choices, and says nothing.
+void refuse_lost_parameters(const QString& file, const FilterScript& script) {
+  QFile text(file);
+  QDomDocument document;
+  if (!text.open(QIODevice::ReadOnly) || !document.setContent(&text)) return;
+  const QDomNodeList filters = document.documentElement().elementsByTagName("filter");
+  for (int i = 0; i < std::min(filters.size(), script.size()); ++i) {
+    const QDomNodeList given = filters.at(i).toElement().elementsByTagName("Param");
+    for (int k = 0; k < given.size(); ++k)
+      if (const QString name = given.at(k).toElement().attribute("name"); !script[i].second.hasParameter(name))
+        fail("MeshLab cannot read the parameter " + name + " of \"" + script[i].first +
+             "\" in the script; take its line from a script that MeshLab has written.");
+  }
+}
+
 void Session::run_script(const QString& file) {
   FilterScript script;
   if (!script.open(file)) fail("The script " + file + " cannot be read; it is no MeshLab script (.mlx).");
+  refuse_lost_parameters(file, script);
   for (const FilterNameParameterValuesPair& step : script) {
     std::printf("filter: %s\n", qUtf8Printable(step.first));
     try {
