@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The host: the installed MeshLab, a stage tree in which it runs with this
-# project's plugins and no system file is touched, and the function that makes
-# such a plugin.
+# The host: the installed MeshLab, or PyMeshLab's folder where PARTS_PYMESHLAB
+# names it, and the function that makes a plugin for it.
+set(PARTS_PYMESHLAB "" CACHE PATH "Folder of Python's package pymeshlab, to build plugins for it; else for MeshLab")
 
 # MeshLab's headers (with vcglib), which no Debian binary package carries.
 if(NOT MESHLAB_HEADERS)
@@ -17,53 +17,46 @@ endif()
 
 find_package(Qt5 REQUIRED COMPONENTS Core Gui Widgets OpenGL Xml)
 find_package(OpenGL REQUIRED)
-find_library(MESHLAB_COMMON_LIBRARY meshlab-common PATH_SUFFIXES meshlab REQUIRED)
-find_program(MESHLAB_PROGRAM meshlab REQUIRED)
-find_program(MESHLAB_SERVER_PROGRAM meshlabserver REQUIRED)
-mark_as_advanced(MESHLAB_COMMON_LIBRARY MESHLAB_PROGRAM MESHLAB_SERVER_PROGRAM)
-
-get_filename_component(meshlab_lib_dir "${MESHLAB_COMMON_LIBRARY}" DIRECTORY)        # /usr/lib/<triplet>/meshlab
-get_filename_component(meshlab_bin_dir "${MESHLAB_PROGRAM}" DIRECTORY)
-get_filename_component(meshlab_prefix "${meshlab_bin_dir}" DIRECTORY)                # /usr
+if(PARTS_PYMESHLAB)
+  set(MESHLAB_COMMON_LIBRARY "${PARTS_PYMESHLAB}/lib/libmeshlab-common.so")
+  set(meshlab_lib_dir "${PARTS_PYMESHLAB}/lib")
+  set(host_scalar double)
+else()
+  find_library(MESHLAB_COMMON_LIBRARY meshlab-common PATH_SUFFIXES meshlab REQUIRED)
+  find_program(MESHLAB_PROGRAM meshlab REQUIRED)
+  find_program(MESHLAB_SERVER_PROGRAM meshlabserver)  # of 2020.09 alone
+  mark_as_advanced(MESHLAB_COMMON_LIBRARY MESHLAB_PROGRAM MESHLAB_SERVER_PROGRAM)
+  get_filename_component(meshlab_lib_dir "${MESHLAB_COMMON_LIBRARY}" DIRECTORY)        # /usr/lib/<triplet>/meshlab
+  get_filename_component(meshlab_bin_dir "${MESHLAB_PROGRAM}" DIRECTORY)
+  get_filename_component(meshlab_prefix "${meshlab_bin_dir}" DIRECTORY)                # /usr
+  set(host_scalar float)
+endif()
 set(MESHLAB_PLUGIN_DIR "${meshlab_lib_dir}/plugins" CACHE PATH "Where 'cmake --install' puts the plugins")
 
-# MeshLab's API as Debian built it: single precision.
+# Hosts of one generation share an API, and a folder shared/host/meshlab<generation>.
+if(EXISTS "${MESHLAB_HEADERS}/src/common/interfaces.h")
+  set(MESHLAB_GENERATION 2020)
+else()
+  set(MESHLAB_GENERATION 2022)
+endif()
+file(STRINGS "${MESHLAB_HEADERS}/ML_VERSION" MESHLAB_VERSION LIMIT_COUNT 1)  # the host refuses plugins for another
+set(MESHLAB_SCALAR ${host_scalar} CACHE STRING "The host's numbers: float in Debian's builds, double in PyMeshLab")
+message(STATUS "MeshLab ${MESHLAB_VERSION} (${MESHLAB_SCALAR}), API of ${MESHLAB_GENERATION}")
+
+# MeshLab's API.
 add_library(deps::meshlab INTERFACE IMPORTED GLOBAL)
 target_include_directories(deps::meshlab SYSTEM INTERFACE "${MESHLAB_HEADERS}/src" "${MESHLAB_HEADERS}/vcglib")
-target_compile_definitions(deps::meshlab INTERFACE MESHLAB_SCALAR=float)
+target_compile_definitions(deps::meshlab INTERFACE
+  "MESHLAB_SCALAR=${MESHLAB_SCALAR}" "MESHLAB_VERSION=${MESHLAB_VERSION}")
 target_link_libraries(deps::meshlab INTERFACE
   "${MESHLAB_COMMON_LIBRARY}" deps::eigen Qt5::Core Qt5::Gui Qt5::Widgets Qt5::OpenGL Qt5::Xml OpenGL::GL)
 
-# --- The stage tree. MeshLab finds its libraries and plugins relative to the
-# real place of its program, so the programs are copied and the rest is linked.
-set(PARTS_STAGE_DIR "${PROJECT_BINARY_DIR}/stage")
-file(RELATIVE_PATH meshlab_lib_subdir "${meshlab_prefix}" "${meshlab_lib_dir}")
-set(stage_lib_dir "${PARTS_STAGE_DIR}/${meshlab_lib_subdir}")
-set(PARTS_STAGE_PLUGIN_DIR "${stage_lib_dir}/plugins")
-
-file(COPY "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" DESTINATION "${PARTS_STAGE_DIR}/bin")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-  "${MESHLAB_PROGRAM}" "${MESHLAB_SERVER_PROGRAM}" "${meshlab_lib_dir}/plugins")
-file(MAKE_DIRECTORY "${PARTS_STAGE_PLUGIN_DIR}" "${PARTS_STAGE_DIR}/share")
-file(CREATE_LINK "${MESHLAB_COMMON_LIBRARY}" "${stage_lib_dir}/libmeshlab-common.so" SYMBOLIC)
-file(CREATE_LINK "${meshlab_prefix}/share/meshlab" "${PARTS_STAGE_DIR}/share/meshlab" SYMBOLIC)
-
-file(GLOB staged "${PARTS_STAGE_PLUGIN_DIR}/*")
-foreach(file IN LISTS staged)  # links to what a MeshLab upgrade may have removed, plugins whose folder is gone
-  get_filename_component(name "${file}" NAME_WE)
-  string(REGEX REPLACE "^lib" "" name "${name}")
-  if(IS_SYMLINK "${file}" OR NOT EXISTS "${PROJECT_SOURCE_DIR}/${name}/CMakeLists.txt")
-    file(REMOVE "${file}")
-  endif()
-endforeach()
-file(GLOB system_plugins "${meshlab_lib_dir}/plugins/*.so")
-foreach(file IN LISTS system_plugins)
-  get_filename_component(name "${file}" NAME)
-  string(REGEX REPLACE "^lib(.*)\\.so$" "\\1" folder "${name}")
-  if(NOT EXISTS "${PROJECT_SOURCE_DIR}/${folder}/CMakeLists.txt")  # an installed plugin of ours: the built one counts
-    file(CREATE_LINK "${file}" "${PARTS_STAGE_PLUGIN_DIR}/${name}" SYMBOLIC)
-  endif()
-endforeach()
+if(PARTS_PYMESHLAB)
+  set(PARTS_STAGE_PLUGIN_DIR "${PROJECT_BINARY_DIR}/pymeshlab")  # to be loaded from there
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/shapes_from_parts.py.in" "${PARTS_STAGE_PLUGIN_DIR}/shapes_from_parts.py" @ONLY)
+else()
+  include(Stage)
+endif()
 
 # add_meshlab_filter(<name> [<source>...])
 # A MeshLab filter plugin from the given sources, or from every .h and .cpp of
@@ -88,11 +81,12 @@ function(add_meshlab_filter name)
 endfunction()
 
 # add_uninstall_target(<plugin>...)
-# The target 'uninstall' takes the plugins out of the system's MeshLab, also
+# The target 'uninstall' takes the plugins and meshlab-script out of the system, also
 # those that an earlier build put there.
 function(add_uninstall_target)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "(.+)" "${MESHLAB_PLUGIN_DIR}/$<TARGET_FILE_NAME:\\1>")
+  list(APPEND files "${meshlab_bin_dir}/meshlab-script")
   set(script "${PROJECT_BINARY_DIR}/uninstall.cmake")
   file(GENERATE OUTPUT "${script}" CONTENT
     "set(files \"${files}\")\ninclude(\"${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake\")\n")

@@ -11,11 +11,13 @@ source "$ROOT/tools/progress.sh"
 # cgal_mesh man.off   prints the path of a mesh of Debian's libcgal-demo
 cgal_mesh() { "$ROOT/tools/cgal-mesh" "$@"; }
 
-# meshlabserver ARG...   the staged one, on a virtual display; its chatter goes
-# to meshlabserver.log, and the log's end is shown when it fails
+# meshlabserver ARG...   the staged one, on a virtual display, or meshlab-script
+# where the host has none; its chatter goes to meshlabserver.log, and the log's
+# end is shown when it fails
 meshlabserver() {
-  local status=0
-  "$ROOT/tools/headless" "$STAGE/bin/meshlabserver" "$@" >meshlabserver.log 2>&1 || status=$?
+  local status=0 program=$STAGE/bin/meshlabserver
+  [[ -x $program ]] || program=$STAGE/bin/meshlab-script
+  "$ROOT/tools/headless" "$program" "$@" >meshlabserver.log 2>&1 || status=$?
   if ((status)); then
     tail -15 meshlabserver.log >&2
     fail "meshlabserver failed (exit $status); its whole output is in $PWD/meshlabserver.log."

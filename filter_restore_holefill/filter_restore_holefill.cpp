@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The filters of 3.3.1 and 3.3.2 of the thesis: surfaces restored and holes
-// filled from a database of models. Names, help, parameters, one call into the
+// filled from a database of models; and a model of it as a layer. Names, help, parameters, one call into the
 // core, new layers.
 #include <chrono>
+#include <filesystem>
 
 #include "parameters.h"
 #include "parts/base/error.h"
 #include "parts/host/common.h"
+#include "parts/io/mesh_io.h"
 #include "parts/mend/mend.h"
 
 namespace parts {
@@ -160,6 +162,22 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   return outcome;
 }
 
+Outcome open(const Inputs& inputs, Progress& progress) {
+  const std::string file = inputs.text("File");
+  if (file.empty()) throw UserError("No model is given; choose a .ply, .obj, .off or .stl file.");
+  std::vector<std::string> missing;
+  Mesh mesh = io::read_mesh(
+      file, [&] { progress.at(0); }, &missing);
+  for (const std::string& name : missing)
+    log_value(progress, "warning", "The model names \"" + name + "\", which is not there; put it beside the file.");
+  log_value(progress, "vertices", mesh.vertex_count());
+  log_value(progress, "faces", mesh.face_count());
+  Outcome outcome;
+  outcome.layers.push_back({std::filesystem::path(file).filename().string(), std::move(mesh), true, {}, as_it_is});
+  outcome.current = 0;
+  return outcome;
+}
+
 Outcome restore(const Inputs& inputs, Progress& progress) { return mend(inputs, progress, false); }
 Outcome fill(const Inputs& inputs, Progress& progress) { return mend(inputs, progress, true); }
 
@@ -186,6 +204,10 @@ std::vector<host::Filter> host::filters() {
                    "match; or those in a box. The scan stays as it is, to the rim; the new faces are selected.") +
            host::composition_reference,
        fill_parameters, fill},
+      {"Database: Open Model as Layer", "open_model", Menu::Creation,
+       "Opens a .ply, .obj, .off or .stl file as a layer, by the readers that the model databases are read with. For "
+       "hosts whose own readers fail: MeshLab 2020.09 as Debian builds it ends at every .obj.",
+       open_parameters, open, false},
   };
 }
 

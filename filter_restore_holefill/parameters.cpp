@@ -108,4 +108,10 @@ std::vector<Parameter> find_parameters(const Scene& scene) {
 std::vector<Parameter> restore_parameters(const Scene& scene) { return mend_parameters(scene, false); }
 std::vector<Parameter> fill_parameters(const Scene& scene) { return mend_parameters(scene, true); }
 
+std::vector<Parameter> open_parameters(const Scene&) {
+  return {open_file("File", {"ply", "obj", "off", "stl"}, "Model",
+                    "A .ply, .obj, .off or .stl file, read as those of a model database are: with colours, texture "
+                    "coordinates and textures, wherever the current folder is.")};
+}
+
 }  // namespace parts

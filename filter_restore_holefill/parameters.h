@@ -10,5 +10,6 @@ namespace parts {
 std::vector<host::Parameter> find_parameters(const host::Scene& scene);
 std::vector<host::Parameter> restore_parameters(const host::Scene& scene);
 std::vector<host::Parameter> fill_parameters(const host::Scene& scene);
+std::vector<host::Parameter> open_parameters(const host::Scene& scene);
 
 }  // namespace parts

@@ -17,6 +17,9 @@ coverage_packages=(gcovr)
 reference_packages=(doxygen)
 fuzz_packages=(clang-14 libclang-rt-14-dev)
 picture_packages=(imagemagick)
+package_packages=(file)
+root_packages=(debootstrap)
+python_packages=(python3-venv)
 
 # need_packages <package>...   installs those that are missing
 need_packages() {

@@ -4,7 +4,15 @@
 // Boykov and Kolmogorov's max-flow (libmaxflow), with the capacities that the
 // cuts here need: 32-bit edges, 64-bit terminals and total.
 #define MAXFLOW_INCLUDE_TEMPLATE_IMPLEMENTATION
+#ifdef __GNUC__  // GCC 13 and later doubt how the library moves its arrays
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpragmas"
+#pragma GCC diagnostic ignored "-Wuse-after-free"
+#endif
 #include <maxflow.h>
+#ifdef __GNUC__
+#pragma GCC diagnostic pop
+#endif
 
 #include <cstdint>
 #include <new>

@@ -19,7 +19,7 @@ Shotm to_shot(const render::Camera& camera, double distance) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) rotation.ElementAt(i, j) = Scalar(c.rotation(i, j));
   shot.Extrinsics.SetRot(rotation);
-  shot.Intrinsics.cameraType = c.type;
+  shot.Intrinsics.cameraType = decltype(shot.Intrinsics.cameraType)(c.type);  // an int, later an enum
   shot.Intrinsics.FocalMm = Scalar(c.focal_mm);
   shot.Intrinsics.ViewportPx = vcg::Point2i(c.viewport_px.x(), c.viewport_px.y());
   shot.Intrinsics.PixelSizeMm = vcg::Point2<Scalar>(Scalar(c.pixel_mm.x()), Scalar(c.pixel_mm.y()));
@@ -57,7 +57,7 @@ void set_camera(const render::Camera& camera, MeshModel& layer) {
 void write_raster(const Outcome::NewRaster& raster, RasterModel& layer) {
   layer.setLabel(QString::fromStdString(raster.name));
   layer.shot = to_shot(raster.camera, raster.distance);
-  layer.addPlane(new Plane(QFileInfo(QString::fromStdString(raster.file)).absoluteFilePath(), Plane::RGBA));
+  api::add_plane(QFileInfo(QString::fromStdString(raster.file)).absoluteFilePath(), layer);
 }
 
 }  // namespace parts::host

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <common/meshmodel.h>
-
+#include "host_api.h"
 #include "parts/host/filter.h"
 
 namespace parts::host {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parts/host/layers.h"
 
-#include <common/meshmodel.h>
 #include <vcg/complex/algorithms/clean.h>
 
 #include <Eigen/LU>
-#include <QDir>
 #include <cmath>
 
+#include "host_api.h"
 #include "parts/host/filter.h"
 #include "parts/host/sizes.h"
 
@@ -48,16 +47,6 @@ struct Placing {
   Eigen::Matrix3d normals;
   bool identity, mirrors;
 };
-
-/// Mesh files name textures relative to their own folder, which is not the
-/// current one when a result is shown or saved.
-std::string absolute_texture(const MeshModel& layer, const std::string& name) {
-  const QString texture = QString::fromStdString(name);
-  const QFileInfo beside(QFileInfo(layer.fullName()).absoluteDir(), texture);
-  return (!layer.fullName().isEmpty() && beside.exists() ? beside : QFileInfo(texture))
-      .absoluteFilePath()
-      .toStdString();
-}
 
 void read_vertices(const MeshModel& layer, const Placing& placing, Mesh& out, std::vector<int>& index) {
   const CMeshO& m = layer.cm;
@@ -117,7 +106,7 @@ void read_faces(const MeshModel& layer, const Placing& placing, const std::vecto
   }
   if (!selected) out.face_selected.clear();
   if (textured)
-    for (const std::string& name : m.textures) out.textures.push_back(absolute_texture(layer, name));
+    for (const std::string& name : m.textures) out.textures.push_back(api::texture_file(layer, name));
 }
 
 }  // namespace
@@ -152,12 +141,12 @@ Box layer_box(const MeshModel& layer) {
 
 double coordinate_step(const MeshModel& layer) {
   const Eigen::Matrix3d linear = to_eigen(layer.cm.Tr).topLeftCorner<3, 3>();
-  float largest = 0;
+  Scalar largest = 0;
   for (const CFaceO& f : layer.cm.face)
     for (int k = 0; k < 3 && !f.IsD(); ++k)
       for (int c = 0; c < 3; ++c)
-        if (const float x = std::abs(f.cV(k)->cP()[c]); std::isfinite(x)) largest = std::max(largest, x);
-  return single_precision_step(largest) * linear.colwise().norm().maxCoeff();
+        if (const Scalar x = std::abs(f.cV(k)->cP()[c]); std::isfinite(x)) largest = std::max(largest, x);
+  return coordinate_step_at(largest) * linear.colwise().norm().maxCoeff();
 }
 
 void write_layer(const Mesh& mesh, MeshModel& layer) {
@@ -191,10 +180,9 @@ void write_layer(const Mesh& mesh, MeshModel& layer) {
     if (!mesh.face_quality.empty()) f.Q() = mesh.face_quality[i];
     if (!mesh.face_selected.empty() && mesh.face_selected[i]) f.SetS();
   }
-  m.textures = mesh.textures;
   m.svn = int(vcg::tri::UpdateSelection<CMeshO>::VertexCount(m));
   m.sfn = int(vcg::tri::UpdateSelection<CMeshO>::FaceCount(m));
-  layer.UpdateBoxAndNormals();
+  api::update_box_and_normals(layer);
   vcg::tri::UpdateNormal<CMeshO>::NormalizePerVertex(m);
   for (size_t i = 0; i < mesh.vertex_normal.size(); ++i) m.vert[i].N() = to_point(mesh.vertex_normal[i].cast<double>());
   layer.setMeshModified();

@@ -18,11 +18,12 @@ Mesh read_layer(const MeshModel& layer);
 Box layer_box(const MeshModel& layer);
 
 /// How far apart the coordinates that the host can keep lie where the layer's
-/// surface is: it has them in single precision. World units.
+/// surface is: most hosts have them in single precision. World units.
 double coordinate_step(const MeshModel& layer);
 
 /// Fills an empty layer: elements, attributes with their data masks, box and
-/// normals (the mesh's where it has them).
+/// normals (the mesh's where it has them). Textures are set apart, once their
+/// files are there: api::set_textures().
 void write_layer(const Mesh& mesh, MeshModel& layer);
 
 /// Moves a layer by a matrix that applies after its own: into the layer's

@@ -14,16 +14,20 @@ namespace parts::host {
 
 namespace {
 
+// As many as a dialog shows without scrolling; the rest is shown on demand.
+constexpr int kPlainParameters = 8;
+
 MeshModel* current_of(const MeshDocument& document) {
   if (document.mm()) return const_cast<MeshModel*>(document.mm());
-  return document.meshList.isEmpty() ? nullptr : document.meshList.first();
+  const std::vector<MeshModel*> layers = api::layers_of(document);
+  return layers.empty() ? nullptr : layers.front();
 }
 
 /// The first visible layer that is not the current one, or else a hidden one,
 /// or else the current one.
 MeshModel* other_of(const MeshDocument& document) {
   MeshModel* other = current_of(document);
-  for (MeshModel* layer : document.meshList) {
+  for (MeshModel* layer : api::layers_of(document)) {
     if (layer == current_of(document)) continue;
     if (layer->isVisible()) return layer;
     if (other == current_of(document)) other = layer;
@@ -34,20 +38,10 @@ MeshModel* other_of(const MeshDocument& document) {
 /// Diagonal of the visible layers: the 100 % of lengths. The host divides by it.
 double diagonal_of(const MeshDocument& document) {
   Box box;
-  for (const MeshModel* layer : document.meshList)
+  for (const MeshModel* layer : api::layers_of(document))
     if (layer->isVisible()) box.extend(layer_box(*layer));
   const double diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
   return diagonal > 0 && std::isfinite(float(diagonal)) ? diagonal : 1;
-}
-
-RichMesh layer_parameter(const Parameter& p, MeshModel* layer, MeshDocument& document, const QString& label,
-                         const QString& help) {
-  const QString name = QString::fromStdString(p.name);
-  if (layer) return RichMesh(name, layer, &document, label, help);
-  // The constructor asserts that a document's parameter has a layer.
-  RichMesh none(name, static_cast<MeshModel*>(nullptr), nullptr, label, help);
-  none.meshdoc = &document;
-  return none;
 }
 
 QStringList to_list(const std::vector<std::string>& values) {
@@ -90,47 +84,55 @@ std::vector<Parameter> parameters_of(const Filter& filter, const Scene& scene) {
   return list;
 }
 
-void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list) {
+void declare(const std::vector<Parameter>& parameters, const MeshDocument& document, RichParameterList& list) {
   using Kind = Parameter::Kind;
+  int count = 0;
   for (const Parameter& p : parameters) {
     const QString name = QString::fromStdString(p.name), label = QString::fromStdString(p.label),
                   help = QString::fromStdString(p.help), text = QString::fromStdString(p.text);
+    const bool advanced = count++ >= kPlainParameters;
     switch (p.kind) {
       case Kind::Flag:
-        list.addParam(RichBool(name, p.value != 0, label, help));
+        api::add<RichBool>(list, advanced, name, p.value != 0, label, help);
         break;
       case Kind::Integer:
-        list.addParam(RichInt(name, int(p.value), label, help));
+        api::add<RichInt>(list, advanced, name, int(p.value), label, help);
         break;
       case Kind::Number:
-        list.addParam(RichFloat(name, float(p.value), label, help));
+        api::add<RichFloat>(list, advanced, name, Scalarm(p.value), label, help);
         break;
       case Kind::Length:
-        list.addParam(RichAbsPerc(name, float(p.value), 0, float(diagonal_of(document)), label, help));
+        api::add<api::RichLength>(list, advanced, name, Scalarm(p.value), 0, Scalarm(diagonal_of(document)), label,
+                                  help);
         break;
       case Kind::Choice:
-        list.addParam(RichEnum(name, int(p.value), to_list(p.values), label, help));
+        api::add<RichEnum>(list, advanced, name, int(p.value), to_list(p.values), label, help);
         break;
       case Kind::Point:
-        list.addParam(RichPoint3f(name, vcg::Point3f(p.point.x(), p.point.y(), p.point.z()), label, help));
+        api::add<api::RichPoint>(list, advanced, name, Point3m(p.point.x(), p.point.y(), p.point.z()), label, help);
         break;
       case Kind::Text:
-        list.addParam(RichString(name, text, label, help));
+        api::add<RichString>(list, advanced, name, text, label, help);
         break;
       case Kind::OpenFile:
-        list.addParam(RichOpenFile(name, text, to_patterns(p.values), label, help));
+        api::add<api::RichReadFile>(list, advanced, name, text, to_patterns(p.values), label, help);
         break;
       case Kind::SaveFile:
-        list.addParam(RichSaveFile(name, text, to_patterns(p.values).value(0), label, help));
+        api::add<api::RichWriteFile>(list, advanced, name, text, to_patterns(p.values).value(0), label, help);
         break;
       case Kind::CurrentLayer:
-        list.addParam(layer_parameter(p, current_of(document), document, label, help));
+        api::add_layer(list, advanced, name, current_of(document), document, label, help);
         break;
       case Kind::OtherLayer:
-        list.addParam(layer_parameter(p, other_of(document), document, label, help));
+        api::add_layer(list, advanced, name, other_of(document), document, label, help);
         break;
     }
   }
+}
+
+RichInputs::RichInputs(std::vector<Parameter> parameters, const RichParameterList& list, const MeshDocument& document)
+    : parameters_(std::move(parameters)), list_(list), document_(document) {
+  declare(parameters_, document_, defaults_);
 }
 
 const Parameter& RichInputs::declaration(const char* name) const {
@@ -139,12 +141,16 @@ const Parameter& RichInputs::declaration(const char* name) const {
   throw std::logic_error(std::string("no parameter is called ") + name);
 }
 
-const Value& RichInputs::value(const char* name, bool (Value::*is)() const) const {
-  const Value& value = list_.getParameterByName(name).value();
-  if (!(value.*is)())  // the host would abort on reading it
-    throw UserError("The script gives " + std::string(name) + " as a Rich" + value.typeName().toStdString() +
-                    "; take its line from the filter's template in scripts/.");
-  return value;
+const Value& RichInputs::value(const char* name) const {
+  return (list_.hasParameter(name) ? list_ : defaults_).getParameterByName(name).value();
+}
+
+template <class Given>
+Given RichInputs::of_type(const char* name, std::optional<Given> given) const {
+  if (given) return *std::move(given);
+  // The host would abort on reading it.
+  throw UserError("The script gives " + std::string(name) + " as a Rich" + value(name).typeName().toStdString() +
+                  "; take its line from the filter's template in scripts/.");
 }
 
 double RichInputs::in_range(const char* name, double value) const {
@@ -158,11 +164,13 @@ double RichInputs::in_range(const char* name, double value) const {
   throw UserError(p.name + " is " + shown(value) + "; give a value from " + shown(p.min) + " to " + shown(p.max) + ".");
 }
 
-bool RichInputs::flag(const char* name) const { return value(name, &Value::isBool).getBool(); }
+bool RichInputs::flag(const char* name) const { return of_type(name, api::as_flag(value(name))); }
 
-int RichInputs::integer(const char* name) const { return int(in_range(name, value(name, &Value::isInt).getInt())); }
+int RichInputs::integer(const char* name) const {
+  return int(in_range(name, of_type(name, api::as_integer(value(name)))));
+}
 
-double RichInputs::number(const char* name) const { return in_range(name, value(name, &Value::isFloat).getFloat()); }
+double RichInputs::number(const char* name) const { return in_range(name, of_type(name, api::as_number(value(name)))); }
 
 /// Lengths beyond this reach everything in the layers that the filter is about.
 double RichInputs::reach() const {
@@ -176,15 +184,17 @@ double RichInputs::reach() const {
 }
 
 double RichInputs::length(const char* name) const {
-  const double length = in_range(name, value(name, &Value::isAbsPerc).getAbsPerc());
+  const double length = in_range(name, of_type(name, api::as_length(value(name))));
   check_size(name, length);
   return std::min(length, reach());
 }
 
-int RichInputs::choice(const char* name) const { return int(in_range(name, value(name, &Value::isEnum).getEnum())); }
+int RichInputs::choice(const char* name) const {
+  return int(in_range(name, of_type(name, api::as_choice(value(name)))));
+}
 
 Vec3 RichInputs::point(const char* name) const {
-  const vcg::Point3f p = value(name, &Value::isPoint3f).getPoint3f();
+  const Point3m p = of_type(name, api::as_point(value(name)));
   const Vec3 point(p.X(), p.Y(), p.Z());
   if (!point.allFinite()) throw UserError(std::string(name) + " is not a point; give three numbers.");
   check_size(name, point.cwiseAbs().maxCoeff());
@@ -192,19 +202,18 @@ Vec3 RichInputs::point(const char* name) const {
 }
 
 std::string RichInputs::text(const char* name) const {
-  return declaration(name).kind == Parameter::Kind::Text ? value(name, &Value::isString).getString().toStdString()
-                                                         : value(name, &Value::isFileName).getFileName().toStdString();
+  const bool file = declaration(name).kind != Parameter::Kind::Text;
+  return of_type(name, file ? api::as_file(value(name)) : api::as_text(value(name))).toStdString();
 }
 
 Layer RichInputs::layer(const char* name) const {
-  MeshModel* layer = value(name, &Value::isMesh).getMesh();
-  if (!layer || !document_.meshList.contains(layer))
-    throw UserError("There is no layer for " + std::string(name) + "; load a mesh and choose it.");
+  MeshModel* layer = of_type(name, api::as_layer(value(name), document_));
+  if (!layer) throw UserError("There is no layer for " + std::string(name) + "; load a mesh and choose it.");
   return Layer(layer);
 }
 
 std::optional<RasterLayer> RichInputs::raster() const {
-  const RasterModel* raster = const_cast<MeshDocument&>(document_).rm();
+  const RasterModel* raster = api::raster_of(document_);
   if (!raster || raster->planeList.isEmpty()) return {};
   const QString file = raster->planeList.first()->fullName();
   if (file.isEmpty()) return {};

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <common/filter_parameter/rich_parameter_list.h>
-#include <common/meshmodel.h>
-
+#include "host_api.h"
 #include "parts/host/filter.h"
 
 namespace parts::host {
@@ -15,13 +13,13 @@ Scene scene_of(const MeshDocument& document);
 std::vector<Parameter> parameters_of(const Filter& filter, const Scene& scene);
 
 /// Adds the host's form of each parameter, with its default in this document.
-void declare(const std::vector<Parameter>& parameters, MeshDocument& document, RichParameterList& list);
+void declare(const std::vector<Parameter>& parameters, const MeshDocument& document, RichParameterList& list);
 
 /// Reads the host's values through the declarations that made them.
 class RichInputs : public Inputs {
  public:
-  RichInputs(std::vector<Parameter> parameters, const RichParameterList& list, const MeshDocument& document)
-      : parameters_(std::move(parameters)), list_(list), document_(document) {}
+  /// @param list  may leave out some, which then have their defaults
+  RichInputs(std::vector<Parameter> parameters, const RichParameterList& list, const MeshDocument& document);
   bool flag(const char* name) const override;
   int integer(const char* name) const override;
   double number(const char* name) const override;
@@ -34,12 +32,15 @@ class RichInputs : public Inputs {
 
  private:
   const Parameter& declaration(const char* name) const;
-  const Value& value(const char* name, bool (Value::*is)() const) const;
+  const Value& value(const char* name) const;
+  template <class Given>
+  Given of_type(const char* name, std::optional<Given> given) const;
   double in_range(const char* name, double value) const;
   double reach() const;
 
   std::vector<Parameter> parameters_;
   const RichParameterList& list_;
+  RichParameterList defaults_;
   const MeshDocument& document_;
 };
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "host_api.h"
 #include "parts/base/error.h"
 #include "parts/host/layers.h"
 
@@ -14,7 +15,9 @@ namespace {
 using mesh::SurfaceFigures;
 
 /// As the host will have it.
-SurfaceFigures measured(const Mesh& mesh) { return mesh::measure_surface(mesh::in_single_precision(mesh)); }
+SurfaceFigures measured(const Mesh& mesh) {
+  return mesh::measure_surface(sizeof(Scalarm) < sizeof(double) ? mesh::in_single_precision(mesh) : mesh);
+}
 
 /// Measures each layer of the document once.
 class InputFigures {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "host_api.h"
 #include "parts/base/error.h"
 
 namespace parts::host {
@@ -44,9 +45,9 @@ Extent extent_of(const Mesh& mesh) {
 
 }  // namespace
 
-double single_precision_step(double at) {
-  const float x = float(std::abs(at));
-  return std::isfinite(x) ? double(std::nextafter(x, std::numeric_limits<float>::infinity())) - double(x) : 0;
+double coordinate_step_at(double at) {
+  const Scalarm x = std::abs(Scalarm(at));
+  return std::isfinite(x) ? double(std::nextafter(x, std::numeric_limits<Scalarm>::infinity())) - double(x) : 0;
 }
 
 void check_size(const std::string& name, double value) {
@@ -67,7 +68,7 @@ void check_sizes(const Mesh& mesh, double step, const std::string& layer) {
   if (size > 0 && size < 1 / kLargestSize)
     throw UserError(the_layer + "is only " + shown(size) + " large, too small to compute with; scale it up to " +
                     shown(1 / kLargestSize) + " or more.");
-  const double coarse = std::max(step, single_precision_step(far));
+  const double coarse = std::max(step, coordinate_step_at(far));
   if (size > 0 && (size < kStepsOfAModel * coarse || extent.edge < kStepsOfAnEdge * coarse))
     throw UserError("The coordinates of the layer \"" + layer + "\" are rounded to " + shown(coarse) +
                     ", as they lie far from the origin, which is too coarse for a model of size " + shown(size) +

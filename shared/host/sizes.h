@@ -11,8 +11,8 @@ namespace parts::host {
 /// Volumes of models this large (and of 1 / this) are numbers in single precision.
 constexpr double kLargestSize = 1e12;
 
-/// Between neighbouring numbers in single precision.
-double single_precision_step(double at);
+/// Between neighbouring numbers as the host keeps coordinates.
+double coordinate_step_at(double at);
 
 /// @param name  of a parameter, a length or coordinates
 /// @throws UserError  it is too large to compute with
@@ -21,7 +21,7 @@ void check_size(const std::string& name, double value);
 /// The surface in world space; vertices that no face uses do not count.
 /// @param step  see coordinate_step()
 /// @throws UserError  it is too large, too small, or so far from the origin that
-///                    its coordinates, in single precision, do not hold its shape
+///                    its coordinates, as the host keeps them, do not hold its shape
 void check_sizes(const Mesh& mesh, double step, const std::string& layer);
 
 }  // namespace parts::host

@@ -10,6 +10,8 @@ namespace {
 
 /// The closest point, the first of several: nanoflann's own set keeps the one that it meets first.
 struct First {
+  using DistanceType = float;  // newer nanoflann asks for it
+
   int index = -1;
   float squared = std::numeric_limits<float>::max();
 
@@ -21,6 +23,7 @@ struct First {
     if (distance < squared || (distance == squared && at < index)) squared = distance, index = at;
     return true;  // go on
   }
+  void sort() {}  // there is but one
 };
 
 }  // namespace

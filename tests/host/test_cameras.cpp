@@ -23,8 +23,8 @@ TEST(Cameras, TheHostProjectsAsWeDo) {
     const Shotm shot = to_shot(camera, 5);
     EXPECT_TRUE(shot.IsValid());
     for (const Vec3& p : {Vec3(0.3, -0.7, 0.2), Vec3(-1, 2, 1), Vec3(0, 0, 0)}) {
-      const vcg::Point3f q(p.x(), p.y(), p.z());
-      const vcg::Point2f pixel = shot.Project(q);
+      const Point3m q(p.x(), p.y(), p.z());
+      const vcg::Point2<Scalarm> pixel = shot.Project(q);
       const Vec3 ours = camera.project(p);
       EXPECT_NEAR(pixel.X(), ours.x(), 1e-3);
       EXPECT_NEAR(200 - pixel.Y(), ours.y(), 1e-3);

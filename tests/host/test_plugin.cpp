@@ -5,9 +5,10 @@
 #include <QApplication>
 #include <QDir>
 #include <QFileInfo>
+#include <QImage>
 
+#include "host_harness.h"
 #include "parts/base/error.h"
-#include "parts/host/plugin.h"
 #include "support/shapes.h"
 
 namespace parts::host {
@@ -36,27 +37,28 @@ struct HostPlugin : testing::Test {
       layer->cm.vert[1].P() = {3, 0, 0};
       layer->cm.vert[2].P() = {0, 4, 0};
       vcg::tri::Allocator<CMeshO>::AddFace(layer->cm, 0, 1, 2);
-      layer->UpdateBoxAndNormals();
+      api::update_box_and_normals(*layer);
     }
     document.setCurrentMesh(0);
     plugin.setLog(&log);
-    plugin.initParameterSet(action(), document, list);
+    list = test::defaults(plugin, document);
   }
-  QAction* action() { return plugin.actions()[0]; }
-  bool apply(vcg::CallBackPos* callback = nullptr) { return plugin.applyFilter(action(), document, list, callback); }
+  QAction* action() { return plugin.actions().front(); }
+  std::string failure(vcg::CallBackPos* callback = nullptr) { return test::run(plugin, document, list, log, callback); }
+  bool apply() { return failure().empty(); }
+  int layer_count() const { return int(api::layers_of(document).size()); }
+  MeshModel& layer(int i) { return *api::layers_of(document)[i]; }
   std::string last_line() {
     return log.logStringList().isEmpty() ? "" : log.logStringList().last().second.toStdString();
   }
-  /// The run fails with this sentence, which the log has too, and nothing has changed.
+  /// The run fails with this sentence, and nothing has changed.
   void expect_failure(const std::string& sentence, vcg::CallBackPos* callback = nullptr) {
-    EXPECT_FALSE(apply(callback));
-    EXPECT_EQ(plugin.errorMsg().toStdString(), sentence);
-    EXPECT_EQ(last_line(), sentence);
-    ASSERT_EQ(document.meshList.size(), 2);
+    EXPECT_EQ(failure(callback), sentence);
+    ASSERT_EQ(layer_count(), 2);
     EXPECT_EQ(document.mm()->id(), 0);
-    for (MeshModel* layer : document.meshList) {
+    for (MeshModel* layer : api::layers_of(document)) {
       EXPECT_TRUE(layer->isVisible());
-      EXPECT_EQ(layer->cm.vert[1].P(), vcg::Point3f(3, 0, 0));
+      EXPECT_EQ(layer->cm.vert[1].P(), Point3m(3, 0, 0));
     }
   }
 
@@ -86,21 +88,19 @@ TEST_F(HostPlugin, DefaultsDependOnTheDocument) {
     return Outcome();
   };
   EXPECT_TRUE(apply());
-  EXPECT_EQ(dynamic_cast<const RichAbsPerc&>(list.getParameterByName("Length")).max, 5) << "the diagonal";
+  EXPECT_EQ(dynamic_cast<const api::RichLength&>(list.getParameterByName("Length")).max, 5) << "the diagonal";
 }
 
 TEST_F(HostPlugin, ADocumentWithoutLayers) {
   MeshDocument empty;
-  RichParameterList of_empty;
-  plugin.initParameterSet(action(), empty, of_empty);
+  const RichParameterList of_empty = test::defaults(plugin, empty);
   EXPECT_EQ(of_empty.size(), list.size());
-  EXPECT_EQ(dynamic_cast<const RichAbsPerc&>(of_empty.getParameterByName("Length")).max, 1);
+  EXPECT_EQ(dynamic_cast<const api::RichLength&>(of_empty.getParameterByName("Length")).max, 1);
   next = [](const Inputs& in, Progress&) {
     in.layer("A");
     return Outcome();
   };
-  EXPECT_FALSE(plugin.applyFilter(action(), empty, of_empty, nullptr));
-  EXPECT_EQ(plugin.errorMsg(), "There is no layer for A; load a mesh and choose it.");
+  EXPECT_EQ(test::run(plugin, empty, of_empty, log, nullptr), "There is no layer for A; load a mesh and choose it.");
 }
 
 TEST_F(HostPlugin, LayersAreAddedAndInputsHidden) {
@@ -112,12 +112,12 @@ TEST_F(HostPlugin, LayersAreAddedAndInputsHidden) {
     return out;
   };
   ASSERT_TRUE(apply());
-  ASSERT_EQ(document.meshList.size(), 4);
+  ASSERT_EQ(layer_count(), 4);
   EXPECT_EQ(document.mm()->label(), "Result");
   EXPECT_EQ(document.mm()->cm.fn, 1);
-  EXPECT_FALSE(document.meshList[0]->isVisible());
-  EXPECT_TRUE(document.meshList[2]->isVisible());
-  EXPECT_FALSE(document.meshList[3]->isVisible());
+  EXPECT_FALSE(layer(0).isVisible());
+  EXPECT_TRUE(layer(2).isVisible());
+  EXPECT_FALSE(layer(3).isVisible());
 }
 
 TEST_F(HostPlugin, RasterLayers) {
@@ -131,11 +131,11 @@ TEST_F(HostPlugin, RasterLayers) {
     return out;
   };
   ASSERT_TRUE(apply());
-  ASSERT_EQ(document.rasterList.size(), 1);
+  ASSERT_EQ(test::raster_count(document), 1);
   ASSERT_TRUE(document.rm());
   EXPECT_EQ(document.rm()->label(), "photo");
-  EXPECT_TRUE(document.meshList[2]->hasDataMask(MeshModel::MM_CAMERA));
-  EXPECT_TRUE(document.meshList[2]->cm.shot.IsValid());
+  EXPECT_TRUE(layer(2).hasDataMask(MeshModel::MM_CAMERA));
+  EXPECT_TRUE(layer(2).cm.shot.IsValid());
   next = [](const Inputs& in, Progress&) {
     EXPECT_TRUE(in.raster());
     EXPECT_EQ(in.raster()->name, "photo");
@@ -183,14 +183,27 @@ TEST_F(HostPlugin, ValuesThatNoFilterCanUseAreNamed) {
   list.setValue("Number", FloatValue(std::nanf("")));
   expect_failure("Number is not a number; give one.");
   list.setValue("Number", FloatValue(1));
-  list.setValue("Length", AbsPercValue(-1));
+  list.setValue("Length", test::LengthValue(-1));
   expect_failure("Length is -1; give a value of at least 0.");
-  list.setValue("Length", AbsPercValue(9));
-  list.setValue("Choice", EnumValue(2));
+  list.setValue("Length", test::LengthValue(9));
+  list.setValue("Choice", test::ChoiceValue(2));
   expect_failure("Choice has no value 2; give one from 0 to 1.");
-  list.setValue("Choice", EnumValue(0));
-  list.setValue("Point", Point3fValue(vcg::Point3f(0, INFINITY, 0)));
+  list.setValue("Choice", test::ChoiceValue(0));
+  list.setValue("Point", test::PointValue(Point3m(0, INFINITY, 0)));
   expect_failure("Point is not a point; give three numbers.");
+}
+
+TEST_F(HostPlugin, ValuesThatAScriptLeavesOutAreTheDefaults) {
+  next = [](const Inputs& in, Progress&) {
+    EXPECT_EQ(in.integer("Integer"), 3);
+    EXPECT_EQ(in.number("Number"), 0.25);
+    EXPECT_EQ(in.layer("B").name(), "two");
+    EXPECT_EQ(in.point("Point"), Vec3(3, 4, 0));
+    return Outcome();
+  };
+  RichParameterList some;
+  some.addParam(RichFloat("Number", 0.25f));
+  EXPECT_EQ(test::run(plugin, document, some, log, nullptr), "");
 }
 
 TEST_F(HostPlugin, ValuesOfTheWrongTypeAreNamed) {
@@ -201,8 +214,7 @@ TEST_F(HostPlugin, ValuesOfTheWrongTypeAreNamed) {
   RichParameterList wrong;
   wrong.addParam(RichInt("Number", 1));
   wrong.addParam(RichBool("AllowFlaws", true));
-  EXPECT_FALSE(plugin.applyFilter(action(), document, wrong, nullptr));
-  EXPECT_EQ(plugin.errorMsg(),
+  EXPECT_EQ(test::run(plugin, document, wrong, log, nullptr),
             "The script gives Number as a RichInt; take its line from the filter's template in scripts/.");
 }
 
@@ -231,7 +243,6 @@ TEST_F(HostPlugin, WarningsComeLast) {
   };
   EXPECT_TRUE(apply());
   EXPECT_EQ(lines_of(log), (Lines{{GLLogStream::FILTER, "cost: 1"}, {GLLogStream::WARNING, "warning: Look here."}}));
-  log.Clear();
   next = [](const Inputs&, Progress& progress) -> Outcome {
     log_value(progress, "warning", "Look here.");
     throw UserError("Do this.");
@@ -278,7 +289,7 @@ TEST_F(HostPlugin, AResultThatIsWorseEndsInAWarning) {
   EXPECT_EQ(last_line(),
             "warning: The result \"Result\" has 1 pair of crossing faces, which its inputs do not have; look at it "
             "before you use it.");
-  EXPECT_EQ(document.meshList.size(), 3) << "it is added all the same";
+  EXPECT_EQ(layer_count(), 3) << "it is added all the same";
 }
 
 TEST_F(HostPlugin, WithoutAllowFlawsItIsAFailure) {
@@ -307,7 +318,7 @@ TEST_F(HostPlugin, FilesComeWithTheLayersOrNotAtAll) {
   next = made(triangle());
   EXPECT_TRUE(apply());
   EXPECT_TRUE(QFileInfo::exists("made.txt"));
-  EXPECT_EQ(document.meshList.size(), 3);
+  EXPECT_EQ(layer_count(), 3);
   // A file that cannot be put in place takes its layers with it.
   QFile::remove("made.txt");
   next = [&](const Inputs& in, Progress&) {
@@ -317,7 +328,7 @@ TEST_F(HostPlugin, FilesComeWithTheLayersOrNotAtAll) {
     return out;
   };
   EXPECT_FALSE(apply());
-  EXPECT_EQ(document.meshList.size(), 3);
+  EXPECT_EQ(layer_count(), 3);
   QDir("made.txt").removeRecursively();
 }
 
@@ -370,16 +381,15 @@ TEST_F(HostPlugin, SizesThatCannotBeComputedWithAreRefusedAtTheDoor) {
     in.length("Length"), in.point("Point"), in.layer("A").mesh();
     return Outcome();
   };
-  list.setValue("Length", AbsPercValue(1e22f));
+  list.setValue("Length", test::LengthValue(1e22f));
   expect_failure("Length is 1e+22, too large to compute with; give at most 1e+12.");
-  list.setValue("Length", AbsPercValue(0));
-  list.setValue("Point", Point3fValue(vcg::Point3f(0, -3e38f, 0)));
+  list.setValue("Length", test::LengthValue(0));
+  list.setValue("Point", test::PointValue(Point3m(0, -3e38f, 0)));
   expect_failure("Point is 3e+38, too large to compute with; give at most 1e+12.");
-  list.setValue("Point", Point3fValue(vcg::Point3f(0, 0, 0)));
+  list.setValue("Point", test::PointValue(Point3m(0, 0, 0)));
   EXPECT_TRUE(apply());
-  document.meshList[0]->cm.vert[2].P() = {0, 1e21f, 0};
-  EXPECT_FALSE(apply());
-  EXPECT_EQ(last_line(),
+  layer(0).cm.vert[2].P() = {0, 1e21f, 0};
+  EXPECT_EQ(failure(),
             "The layer \"one\" has coordinates of 1e+21, too large to compute with; scale it down to 1e+12 or less.");
 }
 
@@ -388,14 +398,14 @@ TEST_F(HostPlugin, LengthsReachNoFartherThanTheLayers) {
     EXPECT_EQ(in.length("Length"), 5e6) << "the diagonal, a million times";
     return Outcome();
   };
-  list.setValue("Length", AbsPercValue(1e11f));
+  list.setValue("Length", test::LengthValue(1e11f));
   EXPECT_TRUE(apply());
 }
 
 /// A ball of 0.24 m as a survey has it, in metres.
 TEST_F(HostPlugin, AScanFarFromTheOriginIsRefusedInWords) {
   const auto place = [&](const Mesh& mesh, const Vec3& at) {
-    CMeshO& m = document.meshList[0]->cm;
+    CMeshO& m = layer(0).cm;
     m.Clear();
     vcg::tri::Allocator<CMeshO>::AddVertices(m, mesh.vertices.size());
     for (int i = 0; i < mesh.vertex_count(); ++i) {
@@ -408,19 +418,18 @@ TEST_F(HostPlugin, AScanFarFromTheOriginIsRefusedInWords) {
     in.layer("A").mesh();
     return Outcome();
   };
-  const Mesh ball = test::sphere({0, 0, 0}, 0.12);
+  const Mesh ball = parts::test::sphere({0, 0, 0}, 0.12);
   place(ball, {0, 0, 0});
   EXPECT_TRUE(apply());
   place(ball, {100, 50, 7});
   EXPECT_TRUE(apply());
   place(ball, {455812, 5423377, 118});
-  EXPECT_FALSE(apply());
   EXPECT_EQ(
-      last_line(),
+      failure(),
       "The coordinates of the layer \"one\" are rounded to 0.5, as they lie far from the origin, which is too coarse "
       "for a model of size 0.25; move it to the origin in the program that made it, and load it again.");
   // Brought back by a matrix it is as coarse as before.
-  document.meshList[0]->cm.Tr.SetTranslate(-455812, -5423377, -118);
+  layer(0).cm.Tr.SetTranslate(-455812, -5423377, -118);
   EXPECT_FALSE(apply());
 }
 
@@ -428,13 +437,14 @@ TEST_F(HostPlugin, TheHostReloadsTexturesOnlyOfAResultThatHasThem) {
   next = [](const Inputs&, Progress&) {
     Outcome out;
     out.layers = {{"Result", triangle()}};
-    out.layers[0].mesh.textures = {"/a.png"};
+    out.layers[0].mesh.textures = {QDir("a.png").absolutePath().toStdString()};
     out.current = 0;
     return out;
   };
-  EXPECT_FALSE(plugin.getClass(action()) & MeshFilterInterface::Texture);
+  ASSERT_TRUE(QImage(2, 2, QImage::Format_RGB32).save("a.png"));
+  EXPECT_FALSE(plugin.getClass(action()) & api::FilterPlugin::Texture);
   ASSERT_TRUE(apply());
-  EXPECT_TRUE(plugin.getClass(action()) & MeshFilterInterface::Texture);
+  EXPECT_TRUE(plugin.getClass(action()) & api::FilterPlugin::Texture);
 }
 
 }  // namespace

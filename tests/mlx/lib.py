@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs .mlx scripts through the staged meshlabserver and checks what comes out.
+"""Runs .mlx scripts through a program of the stage tree and checks what comes out.
 
 The environment (tests/run_script.sh) gives STAGE, the stage tree, a display
-and, as the current one, a folder to work in.
+and, as the current one, a folder to work in; and RUNNER, the program, which
+otherwise is meshlabserver or, where the host has none, our own meshlab-script.
 """
 import os
 import pathlib
@@ -21,7 +22,10 @@ sys.path.insert(0, str(ROOT / "tests" / "data"))
 import shapes  # noqa: E402
 
 STAGE = pathlib.Path(os.environ.get("STAGE", ROOT / "build" / "stage"))
-SERVER = STAGE / "bin" / "meshlabserver"
+SERVERS = [os.environ["RUNNER"]] if os.environ.get("RUNNER") else ["meshlabserver", "meshlab-script"]
+SERVER = next((STAGE / "bin" / name for name in SERVERS if (STAGE / "bin" / name).exists()), STAGE / "bin" / SERVERS[0])
+# Hosts after 2020 have textures as images in memory and write them beside a saved mesh, under plain names.
+TEXTURES_IN_MEMORY = not (STAGE / "bin" / "meshlabserver").exists()
 
 
 def template(slug, **values):
@@ -68,16 +72,16 @@ def current(layer):
 
 
 class Run:
-    """What a run of meshlabserver left: exit code, text, figures, meshes."""
+    """What a run left: exit code, text, figures, meshes."""
 
     def __init__(self, code, text, errors, folder, filters):
         self.code, self.text, self.errors, self.folder = code, text, errors, folder
         self.logs, seen = [], 0
         for part in text.split("filter: ")[1:filters + 1]:
-            # The host prints its whole log again after each filter.
             lines = [line.split(": ", 1) for line in part.splitlines() if re.match(r"[a-z_0-9]+: ", line)]
             self.logs.append(lines[seen:])
-            seen = len(lines)
+            if SERVER.name == "meshlabserver":  # prints its whole log again after each filter
+                seen = len(lines)
 
     def figures(self, step=-1):
         """The "name: value" lines of one filter."""
@@ -96,6 +100,10 @@ class Run:
 
     def mesh(self, name="out"):
         return shapes.read_ply(self.folder / f"{name}.ply")
+
+    def texture_files(self, name="out"):
+        """Of a saved mesh, absolute."""
+        return [self.folder / texture for texture in self.mesh(name).textures]
 
 
 def write_project(path, layers):

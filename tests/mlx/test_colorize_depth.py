@@ -17,7 +17,7 @@ class ColorizeDepth(lib.MeshCase):
         busts = cls.folder / "busts"
         subprocess.run([lib.STAGE.parent / "tools" / "make_busts", busts, "5"], check=True, stdout=subprocess.DEVNULL)
         result = run([], [template("build_mappings", Models=busts / "busts.mlp", Output=cls.folder / "all.mlp",
-                                   Width=60, Height=80, Ambient=1)])
+                                   Width=60, Height=80, Ambient=1)], outputs={})
         assert result.code == 0, result.text
         cls.stored = cls.folder / "all.mlp"
         first = sorted((cls.folder / "all_mappings").glob("000_*_depth.tif"))[0]
@@ -67,7 +67,7 @@ class ColorizeDepth(lib.MeshCase):
     def test_same_bytes_again(self):
         names = [self.folder / f"same{k}.png" for k in range(2)]
         for name in names:
-            self.colored(ImageFile=name, AddMesh=False)
+            self.colored({}, ImageFile=name, AddMesh=False)
         self.assertEqual(names[0].read_bytes(), names[1].read_bytes())
 
     def test_sentences(self):

@@ -63,7 +63,7 @@ def sentences():
                 if len(given) < 3 or given[1] != ['"warning"']:
                     continue
                 what = given[2]
-            elif word == "return" and file.name == "plugin.cpp":  # what stopped a run
+            elif word == "return" and file.name == "run.cpp":  # what stopped a run
                 end = words.index(";", i)
                 what = [w for w in words[i + 1:end] if w not in ("std", ":", "string", "(", ")")]
                 if not any(w.endswith('."') for w in what):

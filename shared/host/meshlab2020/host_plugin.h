@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <common/interfaces.h>
-
+#include "host_api.h"
 #include "parts/host/filter.h"
 
 namespace parts::host {
 
 /// The plugin interface of MeshLab 2020.09 over a table of filters. Compiled
-/// into every plugin of the suite; the one class that a second host replaces.
+/// into every plugin of the suite.
 class Plugin : public QObject, public MeshFilterInterface {
   Q_OBJECT
   MESHLAB_PLUGIN_IID_EXPORTER(MESH_FILTER_INTERFACE_IID)
@@ -29,7 +28,6 @@ class Plugin : public QObject, public MeshFilterInterface {
 
  private:
   const Filter& filter(QAction* action) const { return filters_[ID(action)]; }
-  void run(const Filter& filter, MeshDocument& document, const RichParameterList& list, vcg::CallBackPos* callback);
 
   std::vector<Filter> filters_;
   bool textured_ = false;  ///< the last run made a textured layer
