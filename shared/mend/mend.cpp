@@ -71,7 +71,7 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
   restore_options_.tries = options.search.candidates;
   if (options.restore.fitting.fit_to_rim)
     search_options_.candidates = std::max(search_options_.candidates, options.restore.fitting.blend);
-  out_.chains = first_.chains();
+  out_.chains = first_.chains(), out_.crumbs = first_.crumbs();
   for (const Region& region : regions_) {
     other_wall_.push_back(rim_in_other_wall(first_, region));
     RegionReport report;
@@ -227,6 +227,8 @@ std::string summary(const Mended& mended, bool fill) {
   if (fill && mended.chains)
     text += "; " + counted(mended.chains, "border") +
             " that end at edges of more than two faces bound no hole and stay open";
+  if (mended.crumbs)
+    text += "; " + counted(mended.crumbs, "face") + " that hung on the rest in a vertex only were left out";
   return text + ".";
 }
 

@@ -203,9 +203,9 @@ def numbers():
                                 (2000000000, {"sentence"})):
         yield compose(f"resolution {resolution}, Thesis", None, allowed, Resolution=resolution, Cut="Thesis")
         yield deform(f"resolution {resolution}, Thesis", None, allowed, Resolution=resolution, Cut="Thesis")
-        unused = {"sentence"} if resolution < 0 else {"ok"}  # the cut on the meshes has no voxels
-        yield compose(f"resolution {resolution}", None, unused, resolution >= 0, Resolution=resolution)
-        yield deform(f"resolution {resolution}", None, unused, resolution >= 0, Resolution=resolution)
+        unused = {"ok"} if 0 < resolution <= 100000 else {"sentence"}  # the cut on the meshes has no voxels
+        yield compose(f"resolution {resolution}", None, unused, unused == {"ok"}, Resolution=resolution)
+        yield deform(f"resolution {resolution}", None, unused, unused == {"ok"}, Resolution=resolution)
     for name, values in (("negative iterations", dict(SmoothIterations=-1)), ("weight NaN", dict(SmoothWeight="nan")),
                          ("weight 5", dict(SmoothWeight=5)), ("weight -1", dict(SmoothWeight=-1)),
                          ("distance NaN", dict(SmoothDistance="nan")), ("distance inf", dict(SmoothDistance="inf")),

@@ -30,15 +30,16 @@ struct SceneTally {
   double share(int n) const { return scenes > refused ? double(n) / (scenes - refused) : 1; }
 };
 
-/// The scenes with the seeds 0, 1, ... of a kind; $PARTS_SCENES times as many,
-/// from seed $PARTS_FIRST_SCENE on.
+/// The scenes with the seeds 0, 1, ... of a kind; by hand $PARTS_SCENES many, from
+/// seed $PARTS_FIRST_SCENE on.
+/// @param usual     how many
 /// @param scene_of  seed -> a struct that says by describe() what it is
 /// @param broken    which promise a scene breaks, empty if none; fills its tally
 /// @param simpler   the same scene less this or that, or less of it
 template <class MakeScene, class Broken, class Simpler>
 SceneTally check_scenes(unsigned usual, const MakeScene& scene_of, const Broken& broken, const Simpler& simpler) {
   SceneTally tally;
-  const unsigned first = number_from("PARTS_FIRST_SCENE", 0), count = usual * number_from("PARTS_SCENES", 1);
+  const unsigned first = number_from("PARTS_FIRST_SCENE", 0), count = number_from("PARTS_SCENES", usual);
   for (unsigned seed = first; seed < first + count; ++seed) {
     auto scene = scene_of(seed);
     ++tally.scenes;
