@@ -272,6 +272,14 @@ TEST_F(Memory, OfTheMachineAndOfControlGroups) {
   EXPECT_EQ(free(), 8192e6) << "no limit";
 }
 
+TEST_F(Memory, WhatIsNotKnownRefusesNothing) {
+  EXPECT_NO_THROW(check_memory("A texture", 1e15, {}, "choose a smaller one"));
+  EXPECT_NO_THROW(check_memory("A texture", 1e15, 0, "choose a smaller one"));
+  EXPECT_NO_THROW(check_memory("A texture", 1e6, 1e6, "choose a smaller one"));
+  EXPECT_EQ(sentence([] { check_memory("A texture", 3e9, 2e6, "choose a smaller one"); }),
+            "A texture needs about 3.0 GB of memory, and 2.0 MB are free; choose a smaller one.");
+}
+
 TEST_F(Memory, OfThisProcess) {
   const auto free = available_memory();
   ASSERT_TRUE(free);

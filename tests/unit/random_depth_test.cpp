@@ -128,7 +128,8 @@ std::string broken(const DepthScene& scene, SceneTally& tally) {
     out = render::depth_to_mesh(front, scene.back ? back : cv::Mat(), camera, {scene.jump}, silent);
   } catch (const UserError&) {
     ++tally.refused;
-    return {};
+    const bool plain = scene.bumps == 0 && scene.jump == 0 && scene.noise == 0 && scene.missing == 0;
+    return plain ? "a plain slope is refused" : "";
   }
   out.mesh.textures = {"image.png"};
   mesh::check_arrays(out.mesh);
@@ -146,7 +147,7 @@ std::string broken(const DepthScene& scene, SceneTally& tally) {
 
 TEST(RandomScenes, DepthToMesh) {
   const SceneTally tally = check_scenes(400, depth_scene, broken, simpler);
-  EXPECT_LE(tally.refused, tally.scenes / 10);
+  EXPECT_LE(tally.refused, tally.scenes * 15 / 100);  // specks, all torn
 }
 
 }  // namespace
