@@ -148,7 +148,7 @@ std::string broken(const MendScene& scene, SceneTally& tally) {
     return "other borders than are said to be left";
   if (!scene.fill)
     if (const std::string what = changed_elsewhere(in.scan, options.region, m.mesh); !what.empty()) return what;
-  if (const int n = dressed_otherwise(in.scan, m.mesh)) return std::to_string(n) + " corners in other colours";
+  if (const std::string what = dressed_otherwise(in.scan, m.mesh); !what.empty()) return what;
   if (scene.colors && m.mesh.vertex_color.empty()) return "the colours are gone";
   const double size = in.whole.bounds().diagonal().norm();
   const spatial::ClosestFace truth(in.whole);

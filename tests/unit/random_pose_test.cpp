@@ -155,7 +155,7 @@ std::string broken(const LimbScene& scene, SceneTally& tally) {
   room.extend(mesh::transformed(limb.mesh, map).bounds());
   const Vec3 around = Vec3::Constant(0.1 * size);
   if (!Box(room.min() - around, room.max() + around).contains(m.bounds())) return "a vertex out of bounds";
-  if (const int n = dressed_otherwise(limb.mesh, m)) return std::to_string(n) + " corners in other colours";
+  if (const std::string what = dressed_otherwise(limb.mesh, m); !what.empty()) return what;
   if (scene.colors && m.vertex_color.empty()) return "the colours are gone";
   return {};
 }

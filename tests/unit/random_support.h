@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -106,26 +107,31 @@ inline void dress(Mesh& mesh, bool colors, bool texture) {
   }
 }
 
-/// Of faces that lie in both meshes, bit for bit: how many have other colours or texture coordinates.
-inline int dressed_otherwise(const Mesh& before, const Mesh& after) {
+/// Of the faces that lie in both meshes, bit for bit, the first corner with another
+/// colour or place in the texture; but for faces that are selected, which are new.
+inline std::string dressed_otherwise(const Mesh& before, const Mesh& after) {
+  constexpr float kSameTexel = 1e-6f;
   std::map<FaceKey, int> known;
   for (int f = 0; f < before.face_count(); ++f) known[face_key(before, f)] = f;
-  int changed = 0;
-  for (int f = 0; f < after.face_count(); ++f) {
+  std::ostringstream what;
+  for (int f = 0; f < after.face_count() && what.str().empty(); ++f) {
     const auto was = known.find(face_key(after, f));
-    if (was == known.end()) continue;
+    if (was == known.end() || (!after.face_selected.empty() && after.face_selected[f])) continue;
     const int g = was->second;
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) {
         if (after.corner(f, k) != before.corner(g, j)) continue;
-        const bool color = before.vertex_color.empty() ||
-                           after.vertex_color[after.faces[f][k]] == before.vertex_color[before.faces[g][j]];
-        const bool uv = before.wedges.empty() || (after.wedges[f].uv[k] == before.wedges[g].uv[j] &&
-                                                  after.wedges[f].texture == before.wedges[g].texture);
-        changed += !color || !uv;
+        if (!before.vertex_color.empty() &&
+            after.vertex_color[after.faces[f][k]] != before.vertex_color[before.faces[g][j]])
+          what << "face " << f << " has another colour; ";
+        if (before.wedges.empty()) continue;
+        const Wedges &now = after.wedges[f], &then = before.wedges[g];
+        if (now.texture != then.texture || !((now.uv[k] - then.uv[j]).norm() < kSameTexel))
+          what << "face " << f << " shows texture " << now.texture << " at " << now.uv[k].transpose() << " instead of "
+               << then.texture << " at " << then.uv[j].transpose() << "; ";
       }
   }
-  return changed;
+  return what.str();
 }
 
 }  // namespace parts::test
