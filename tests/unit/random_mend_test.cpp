@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "mend_support.h"
+#include "parts/mend/small_holes.h"
 #include "parts/mesh/result_check.h"
 #include "unit/random_support.h"
 
@@ -156,6 +157,51 @@ std::string broken(const MendScene& scene, SceneTally& tally) {
   for (const Vec3& p : m.mesh.vertices) farthest = std::max(farthest, truth(p).distance);
   if (farthest > (scene.fill ? 0.1 : 0.12) * size) return "a vertex " + std::to_string(farthest / size) + " sizes off";
   return {};
+}
+
+/// A crumpled ball without the faces around some of its vertices.
+struct PinholeScene {
+  unsigned seed = 0;
+  int pinholes = 1;
+  double crumpled = 0.9;
+
+  std::string describe() const {
+    return std::to_string(pinholes) + " pinholes, crumpled by " + std::to_string(crumpled);
+  }
+};
+
+std::string broken_pinholes(const PinholeScene& s, SceneTally& tally) {
+  Random random(s.seed);
+  Mesh ball = noisy_sphere(Vec3::Zero(), 1, 3, s.crumpled, s.seed);
+  for (Vec3& p : ball.vertices) p += s.crumpled * 0.15 * random.direction();
+  std::vector<char> gone(ball.vertices.size(), 0);
+  for (int n = 0; n < s.pinholes; ++n) gone[std::size_t(random.below(ball.vertex_count()))] = 1;
+  std::vector<char> stays;
+  for (const Triangle& f : ball.faces) stays.push_back(!gone[f[0]] && !gone[f[1]] && !gone[f[2]]);
+  const mend::Scan scan(mesh::take_faces(ball, stays));
+  std::vector<mesh::Loop> small;
+  for (const mesh::Loop& rim : scan.rims())
+    if (mend::is_small(rim)) small.push_back(rim);
+  const mend::SmallHoles done = mend::close_small(scan, small);
+  const int closed = int(std::count(done.closed.begin(), done.closed.end(), 1));
+  tally.flawless += closed == int(small.size());
+  if (done.scan.rims().size() + closed != scan.rims().size()) return "other rims than are said to be closed";
+  mesh::ResultRules rules;
+  rules.may_part = true;
+  return worse_than({scan.mesh()}, done.scan.mesh(), rules);
+}
+
+TEST(RandomScenes, PinholesAreClosedWithoutCrossings) {
+  const auto scene = [](unsigned seed) {
+    Random random(seed);
+    return PinholeScene{seed, 1 + random.below(12), random.uniform(0.1, 1)};
+  };
+  const SceneTally tally = check_scenes(200, scene, broken_pinholes, [](const PinholeScene& s) {
+    std::vector<PinholeScene> all;
+    if (s.pinholes > 1) all.push_back({s.seed, s.pinholes - 1, s.crumpled});
+    return all;
+  });
+  EXPECT_GE(tally.share(tally.flawless), 0.5);
 }
 
 TEST(RandomScenes, FillHole) {
