@@ -206,13 +206,13 @@ TEST(RandomScenes, PinholesAreClosedWithoutCrossings) {
 
 TEST(RandomScenes, FillHole) {
   const SceneTally tally = check_scenes(
-      12, [](unsigned seed) { return mend_scene(seed, true); }, broken, simpler);
+      16, [](unsigned seed) { return mend_scene(seed, true); }, broken, simpler);
   EXPECT_LE(tally.refused, tally.scenes / 4);
 }
 
 TEST(RandomScenes, Restore) {
   const SceneTally tally = check_scenes(
-      12, [](unsigned seed) { return mend_scene(seed, false); }, broken, simpler);
+      16, [](unsigned seed) { return mend_scene(seed, false); }, broken, simpler);
   EXPECT_LE(tally.refused, tally.scenes / 4);
 }
 
