@@ -117,6 +117,18 @@ TEST(ResultCheck, FlippedNeighboursAndTheInsideOut) {
   EXPECT_EQ(worse(without_faces(inside_out, 0, 200), {without_faces(sphere(), 0, 200)}), "its inside out");
 }
 
+TEST(ResultCheck, ASheetThatIsBentTheOtherWayIsNotInsideOut) {
+  const auto bent = [](double by) {
+    Mesh sheet = box({-1, -1, 0}, {1, 1, 0.1}, 8);
+    sheet = mesh::take_faces(sheet, faces_where(sheet, [](const Vec3& c) { return c.z() > 0.0999; }));
+    for (Vec3& p : sheet.vertices) p.z() = by * p.x() * p.x();
+    return sheet;
+  };
+  EXPECT_LT(measure_surface(bent(-0.2)).volume * measure_surface(bent(0.2)).volume, 0);
+  EXPECT_EQ(worse(bent(0.2), {bent(-0.2)}), "");
+  EXPECT_EQ(worse(bent(-0.2), {bent(0.2)}), "");
+}
+
 TEST(ResultCheck, PlacesWhereItTouchesItself) {
   const Mesh a = box({0, 0, 0}, {1, 1, 1}), b = box({1, 1, 1}, {2, 2, 2});
   const SurfaceFigures s = measure_surface(both(a, b));
