@@ -13,7 +13,6 @@
 #include "parts/host/common.h"
 #include "parts/io/raster_io.h"
 #include "parts/render/atlas.h"
-#include "parts/render/check_memory.h"
 #include "parts/render/surface_color.h"
 #include "parts/render/texture.h"
 #include "parts/synthesis/usage_picture.h"
@@ -90,8 +89,8 @@ colorize::ColorizeMeshOptions options_of(const Inputs& inputs, const Mesh& mesh,
 
 void check_texture_size(int size) {
   constexpr double kBytes = 40;  // a texel while it is found
-  render::check_memory("A texture of " + std::to_string(size) + " x " + std::to_string(size), kBytes * size * size,
-                       available_memory(), "choose a smaller TextureSize");
+  check_memory("A texture of " + std::to_string(size) + " x " + std::to_string(size), kBytes * size * size,
+               available_memory(), "choose a smaller TextureSize");
 }
 
 /// The mesh with a texture: its picture, its file.

@@ -170,10 +170,9 @@ Outcome compose_layers(const Inputs& inputs, Progress& progress) {
   mesh::ResultRules whole, open;
   whole.joins = true;
   open.may_part = open.may_open = true;
-  mesh::ResultRules beside = open;  // a hat on a head
-  beside.may_cross = true;
-  outcome.layers.push_back(
-      {"Composed", std::move(result.composed), true, {}, {{a, b}, options.stitch ? whole : beside}});
+  Outcome::Check check{{a, b}, whole};
+  if (!options.stitch) check.rules = open, check.part = result.face_from_b;  // a hat on a head
+  outcome.layers.push_back({"Composed", std::move(result.composed), true, {}, std::move(check)});
   outcome.current = 0;
   if (clipped) outcome.layers.push_back({"Clipped A", std::move(result.clipped_a), false, {}, {{a}, open}});
   if (clipped) outcome.layers.push_back({"Clipped B", std::move(result.clipped_b), false, {}, {{b}, open}});

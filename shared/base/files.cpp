@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "parts/base/memory.h"
 
@@ -92,6 +93,13 @@ fs::path write_draft(const fs::path& target, std::string_view bytes) {
     return {};
   }
   return {};
+}
+
+/// A folder's one name.
+fs::path only_name(const fs::path& folder) {
+  std::error_code error;
+  const fs::path whole = fs::canonical(folder, error);
+  return error ? folder : whole;
 }
 
 bool flush_file(const fs::path& file) {
@@ -187,6 +195,23 @@ std::string InputFile::read_all(std::uint64_t most, const Poll& poll) const {
   return bytes;
 }
 
+FolderLock::FolderLock(const fs::path& folder, std::chrono::milliseconds patience)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  constexpr std::chrono::milliseconds kPause(5);
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && (errno == EINTR || errno == EWOULDBLOCK) &&
+         std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(kPause);
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void OutputFiles::lock(const fs::path& folder) {
+  locks_.try_emplace(only_name(folder), folder);  // once: the same run would wait for itself
+}
+
 void OutputFiles::check(const std::string& path, const std::string& what) {
   const fs::path draft = may_be_replaced(path) ? write_draft(path, "") : fs::path();
   if (draft.empty()) throw unwritable(path, what);
@@ -200,11 +225,15 @@ void OutputFiles::make_folder(const fs::path& folder) {
   std::reverse(missing.begin(), missing.end());
   for (const fs::path& f : missing)
     if (fs::create_directory(f, error)) folders_.push_back(f);
+  asked_.insert(folder);
   if (!fs::is_directory(folder, error))
     throw UserError("The folder \"" + folder.string() + "\" cannot be made; choose a place that may be written.");
 }
 
 void OutputFiles::add(const fs::path& path, std::string_view bytes, const std::string& what) {
+  std::error_code error;
+  const fs::path folder = folder_of(path);
+  if (asked_.count(folder) && !fs::exists(folder, error)) make_folder(folder);  // a run that failed has taken it away
   const fs::path draft = may_be_replaced(path) ? write_draft(path, bytes) : fs::path();
   if (draft.empty()) throw unwritable(path, what);
   drafts_.push_back({path, draft, what});
@@ -263,9 +292,13 @@ void OutputFiles::undo() {
 void OutputFiles::commit() {
   try {
     flush();
+    std::set<fs::path> targets;  // in one order, so that no two runs wait for each other
+    for (const Draft& d : drafts_) targets.insert(only_name(folder_of(d.path)));
+    for (const fs::path& folder : targets) lock(folder);
     for (Draft& d : drafts_) place(d);
   } catch (...) {
     undo();
+    locks_.clear();
     throw;
   }
   std::set<fs::path> folders;
@@ -275,7 +308,7 @@ void OutputFiles::commit() {
   }
   for (const fs::path& file : removed_) ::unlink(file.c_str());
   for (const fs::path& folder : folders) flush_folder(folder);
-  drafts_.clear(), folders_.clear(), reserved_.clear(), removed_.clear();
+  drafts_.clear(), folders_.clear(), asked_.clear(), reserved_.clear(), removed_.clear(), locks_.clear();
 }
 
 OutputFiles::~OutputFiles() {
@@ -299,16 +332,6 @@ bool write_cache_file(const std::string& path, std::string_view bytes) {
   if (::rename(draft.c_str(), path.c_str()) == 0) return true;
   ::unlink(draft.c_str());
   return false;
-}
-
-FolderLock::FolderLock(const fs::path& folder)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
-  }
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace parts

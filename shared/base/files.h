@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +57,21 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
+/// Keeps other runs from changing the files of a folder at the same time, where
+/// the file system knows locks; released at the end. Waits for half a minute at
+/// most: who holds a lock longer has been stopped, or is no run of the suite.
+class FolderLock {
+ public:
+  static constexpr std::chrono::milliseconds most_patience{30000};
+  explicit FolderLock(const std::filesystem::path& folder, std::chrono::milliseconds patience = most_patience);
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+
+ private:
+  int descriptor_ = -1;
+};
+
 /// Files that appear together or not at all. Each is first a draft with a random
 /// name of its own in the folder of its target, so that no file of the user, no
 /// planted link and no other run stands in the way; what is not committed leaves
@@ -79,10 +97,14 @@ class OutputFiles {
   /// Takes a name that nothing has yet for add(), also against other runs.
   /// @return false where something has it
   bool reserve(const std::filesystem::path& path);
+  /// Keeps other runs from changing files of a folder until these are in place or
+  /// given up; several folders in the order of their paths. See FolderLock.
+  void lock(const std::filesystem::path& folder);
   /// A file that goes when the others have come; never fails.
   void remove(const std::filesystem::path& path) { removed_.push_back(path); }
   double bytes() const { return bytes_; }  ///< of all drafts
-  /// Flushes all drafts to the disk and gives them their names.
+  /// Flushes all drafts to the disk and gives them their names; files of two runs
+  /// do not mix.
   /// @throws UserError  one cannot take its place: then none has
   void commit();
 
@@ -97,9 +119,11 @@ class OutputFiles {
   void place(Draft& draft);
   void undo();
 
+  std::map<std::filesystem::path, FolderLock> locks_;
   std::vector<Draft> drafts_;
   double bytes_ = 0;
   std::vector<std::filesystem::path> folders_, reserved_, removed_;  ///< folders that were made, outer ones first
+  std::set<std::filesystem::path> asked_;                            ///< of make_folder()
 };
 
 /// One such file. @throws UserError  it cannot be written; what was there is as it was
@@ -107,19 +131,6 @@ void write_file(const std::string& path, std::string_view bytes, const std::stri
 
 /// One such file that may be lost in a power cut, as a cache may. @return false if it cannot be written
 bool write_cache_file(const std::string& path, std::string_view bytes);
-
-/// Keeps other runs from changing the files of a folder at the same time, where
-/// the file system knows locks; released at the end.
-class FolderLock {
- public:
-  explicit FolderLock(const std::filesystem::path& folder);
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
-
- private:
-  int descriptor_ = -1;
-};
 
 /// Whether a name is that of a draft, which a run that was killed may have left.
 bool is_draft_name(const std::string& name);

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "parts/base/files.h"
+
 namespace parts {
 namespace {
 
@@ -93,6 +95,15 @@ std::optional<double> available_memory(const std::string& root) {
   const fs::path status = root + "/proc/self/status";
   left = least(left, below_limit(RLIMIT_AS, number_named(status, "VmSize:")));
   return least(left, below_limit(RLIMIT_DATA, number_named(status, "VmData:")));
+}
+
+UserError too_little_memory(const std::string& what, double needed, double free, const std::string& remedy) {
+  return UserError(what + " needs about " + readable_size(needed) + " of memory, and " + readable_size(free) +
+                   " are free; " + remedy + ".");
+}
+
+void check_memory(const std::string& what, double needed, std::optional<double> free, const std::string& remedy) {
+  if (free && *free > 0 && needed > *free) throw too_little_memory(what, needed, *free, remedy);
 }
 
 }  // namespace parts

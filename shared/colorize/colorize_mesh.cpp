@@ -14,7 +14,6 @@
 #include "parts/colorize/kept_colors.h"
 #include "parts/colorize/posed_mesh.h"
 #include "parts/mesh/attributes.h"
-#include "parts/render/check_memory.h"
 #include "parts/render/rasterize.h"
 #include "parts/render/surface_color.h"
 #include "parts/synthesis/pyramid.h"
@@ -130,8 +129,8 @@ void check_memory(const std::vector<cv::Rect>& parts, std::size_t images) {
   constexpr double kBytes = 180;  // a pixel and image: planes, bands, pyramids, matches
   double pixels = 0;
   for (const cv::Rect& part : parts) pixels += double(part.area());
-  render::check_memory("Colouring these views", pixels * kBytes * double(images), available_memory(),
-                       "choose a smaller Width and Height, fewer Views or fewer Examples");
+  parts::check_memory("Colouring these views", pixels * kBytes * double(images), available_memory(),
+                      "choose a smaller Width and Height, fewer Views or fewer Examples");
 }
 
 /// Whether nearly all that is seen are front faces.

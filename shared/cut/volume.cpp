@@ -76,10 +76,8 @@ void check_memory(const Model& a, const Model& b, const Box& volume, int resolut
     const int middle = fits + (fails - fits) / 2;
     (memory_estimate(a, b, Grid::over(volume, middle)) < 0.7 * have ? fits : fails) = middle;
   }
-  const auto gigabytes = [](double x) { return std::to_string(std::max(1L, std::lround(std::min(x, 9e17) / 1e9))); };
-  throw UserError("A resolution of " + std::to_string(resolution) + " needs about " + gigabytes(bytes) +
-                  " GB of memory and " + gigabytes(have) + " GB are free; choose a Resolution of " +
-                  std::to_string(fits) + " or less.");
+  throw too_little_memory("A resolution of " + std::to_string(resolution), bytes, have,
+                          "choose a Resolution of " + std::to_string(fits) + " or less");
 }
 
 }  // namespace

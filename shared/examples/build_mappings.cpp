@@ -74,7 +74,7 @@ class Draft {
 
   /// Puts all in place; what only the older database had goes.
   void commit(const io::MlpProject& project, const io::ClassPreset& preset) {
-    const FolderLock alone(folder_of(output_));
+    files_.lock(folder_of(output_));
     find_older();
     for (const std::string& name : manifest_)
       if (names_.count(name) == 0 && !is_input(folder_ / name)) files_.remove(folder_ / name);

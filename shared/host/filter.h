@@ -103,6 +103,8 @@ struct Outcome {
     std::vector<Layer> inputs = {};  ///< whose surfaces it is made of; none: it is to have no flaw at all
     mesh::ResultRules rules = {};
     bool as_it_is = false;  ///< a model that was not made here: its flaws are its own
+    /// Per face, where parts lie beside each other that may cross and touch: which it is of.
+    std::vector<char> part = {};
   };
   struct NewLayer {
     std::string name;

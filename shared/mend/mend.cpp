@@ -71,7 +71,7 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
   restore_options_.tries = options.search.candidates;
   if (options.restore.fitting.fit_to_rim)
     search_options_.candidates = std::max(search_options_.candidates, options.restore.fitting.blend);
-  out_.chains = first_.chains();
+  out_.chains = first_.chains(), out_.crumbs = first_.crumbs();
   for (const Region& region : regions_) {
     other_wall_.push_back(rim_in_other_wall(first_, region));
     RegionReport report;
@@ -83,10 +83,14 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
 }
 
 void Mending::close_small_holes() {
-  std::vector<mesh::Loop> small;
+  std::vector<mesh::Loop> rims;
+  std::vector<std::size_t> small;
   for (std::size_t i = 0; i < regions_.size(); ++i)
-    if (is_small(regions_[i].rims[0])) small.push_back(regions_[i].rims[0]), out_.regions[i].end = End::Small;
-  scan_ = close_small(first_, small);
+    if (is_small(regions_[i].rims[0])) rims.push_back(regions_[i].rims[0]), small.push_back(i);
+  SmallHoles done = close_small(first_, rims);
+  for (std::size_t k = 0; k < small.size(); ++k)
+    if (done.closed[k]) out_.regions[small[k]].end = End::Small;
+  scan_ = std::move(done.scan);
 }
 
 /// The region in the scan as it is now: by the edges of its rims, and where its
@@ -227,6 +231,8 @@ std::string summary(const Mended& mended, bool fill) {
   if (fill && mended.chains)
     text += "; " + counted(mended.chains, "border") +
             " that end at edges of more than two faces bound no hole and stay open";
+  if (mended.crumbs)
+    text += "; " + counted(mended.crumbs, "face") + " that hung on the rest in a vertex only were left out";
   return text + ".";
 }
 

@@ -59,6 +59,7 @@ struct Mended {
   std::vector<RegionReport> regions;  ///< holes: the longest rim first
   std::vector<Found> candidates;      ///< as pasted, one for each region that was mended from a model
   int chains = 0;                     ///< borders that end at edges of more than two faces, and bound no hole
+  int crumbs = 0;                     ///< faces of the scan that hung on the rest in vertices only, and are gone
   int count(RegionReport::End end) const;
 };
 

@@ -15,8 +15,9 @@ namespace {
 
 /// Without crumbs: small pieces, hardly more than a rim, that hung on the rest
 /// in vertices only.
-/// @param first  vertices from here on are copies
-Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first) {
+/// @param first   vertices from here on are copies
+/// @param crumbs  how many faces they had
+Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first, int& crumbs) {
   constexpr int kMostFaces = 12;
   const std::vector<int> component = mesh::vertex_components(mesh);
   std::vector<int> faces(mesh.vertices.size(), 0);
@@ -29,14 +30,15 @@ Mesh without_crumbs(const Mesh& mesh, const std::vector<int>& copies, int first)
     const int piece = component[f[0]];
     keep.push_back(!hung[piece] || faces[piece] > kMostFaces || faces[piece] == largest);
   }
+  crumbs = int(std::count(keep.begin(), keep.end(), 0));
   return mesh::take_faces(mesh, keep);
 }
 
-Mesh made_ready(const Mesh& input) {
+Mesh made_ready(const Mesh& input, int& crumbs) {
   Mesh mesh = mesh::prepare_without_slits(input);
   const int first = mesh.vertex_count();
   const std::vector<int> copies = mesh::split_pinches(mesh, std::vector<char>(mesh.vertices.size(), 1));
-  return copies.empty() ? mesh : without_crumbs(mesh, copies, first);
+  return copies.empty() ? mesh : without_crumbs(mesh, copies, first, crumbs);
 }
 
 /// A vertex at a place where borders meet, and the fan of faces around it.
@@ -130,7 +132,7 @@ std::vector<mesh::Loop> find_rims(const Mesh& mesh, int* chains) {
   return rims;
 }
 
-Scan::Scan(const Mesh& input) : mesh_(made_ready(input)), origin_(mesh_.faces.size()) {
+Scan::Scan(const Mesh& input) : mesh_(made_ready(input, crumbs_)), origin_(mesh_.faces.size()) {
   std::iota(origin_.begin(), origin_.end(), 0);
   survey();
 }

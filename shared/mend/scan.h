@@ -33,6 +33,7 @@ class Scan {
   const std::vector<int>& origin() const { return origin_; }
   const std::vector<mesh::Loop>& rims() const { return rims_; }
   int chains() const { return chains_; }  ///< borders that end at edges of more than two faces: no rims
+  int crumbs() const { return crumbs_; }  ///< faces of the input that were dropped as such
   /// Per vertex a number of its component, faces joined by vertices; not in a row.
   const std::vector<int>& component() const { return component_; }
   /// Per vertex: the faces of its component.
@@ -41,6 +42,7 @@ class Scan {
  private:
   void survey();
 
+  int crumbs_ = 0;
   Mesh mesh_;
   std::vector<int> origin_;
   std::vector<mesh::Loop> rims_;

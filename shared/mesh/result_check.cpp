@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 
 #include "parts/base/disjoint_sets.h"
+#include "parts/mesh/attributes.h"
 #include "parts/mesh/edges.h"
 #include "parts/mesh/prepare.h"
 #include "parts/mesh/self_intersections.h"
@@ -45,8 +47,11 @@ Key key_of(std::array<Key, N> keys) {
   return all;
 }
 
+constexpr std::array kFlaws{&SurfaceFigures::nonmanifold, &SurfaceFigures::pinches, &SurfaceFigures::flipped,
+                            &SurfaceFigures::crossings};
+
 void sort(SurfaceFigures& s) {
-  for (auto* flaws : {&s.nonmanifold, &s.pinches, &s.flipped, &s.crossings}) std::sort(flaws->begin(), flaws->end());
+  for (const auto flaws : kFlaws) std::sort((s.*flaws).begin(), (s.*flaws).end());
 }
 
 /// Vertices of one place made one; faces that are none left out, the others turned over nowhere.
@@ -146,8 +151,12 @@ std::string enumerated(const std::vector<std::string>& phrases) {
   return text;
 }
 
-/// Encloses something, and not but a sheet's bend.
-bool solid(const SurfaceFigures& s, int sign) { return sign * s.volume > 0.01 * s.roundest; }
+/// Encloses something, and not but a sheet's bend: an open surface that is hollow as
+/// half a ball, of 1.4 by this measure; a sheet bent by 20 degrees has 0.3.
+bool solid(const SurfaceFigures& s, int sign) {
+  const double least = s.borders > 0 ? 1 : 0.01;
+  return sign * s.volume > least * s.roundest;
+}
 
 }  // namespace
 
@@ -168,14 +177,29 @@ SurfaceFigures together(const std::vector<SurfaceFigures>& surfaces) {
   for (const SurfaceFigures& s : surfaces) {
     all.pieces += s.pieces, all.borders += s.borders, all.nonfinite += s.nonfinite;
     all.volume += s.volume, all.roundest += s.roundest;
-    const auto append = [](SurfaceFigures::Flaws& to, const SurfaceFigures::Flaws& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.nonmanifold, s.nonmanifold), append(all.pinches, s.pinches);
-    append(all.flipped, s.flipped), append(all.crossings, s.crossings);
+    for (const auto flaws : kFlaws) (all.*flaws).insert((all.*flaws).end(), (s.*flaws).begin(), (s.*flaws).end());
   }
   sort(all);
   return all;
+}
+
+SurfaceFigures measure_parts(const Mesh& mesh, const std::vector<char>& part, int threads) {
+  std::vector<SurfaceFigures> figures;
+  for (const char one : std::set<char>(part.begin(), part.end())) {
+    std::vector<char> of_it;
+    for (const char p : part) of_it.push_back(p == one);
+    figures.push_back(measure_surface(take_faces(mesh, of_it), threads));
+  }
+  return together(figures);
+}
+
+void add_flaws(const SurfaceFigures& from, SurfaceFigures& to) {
+  for (const auto flaws : kFlaws) {
+    SurfaceFigures::Flaws both;
+    std::set_union((from.*flaws).begin(), (from.*flaws).end(), (to.*flaws).begin(), (to.*flaws).end(),
+                   std::back_inserter(both));
+    to.*flaws = std::move(both);
+  }
 }
 
 std::string worse_than_inputs(const SurfaceFigures& result, const std::vector<SurfaceFigures>& inputs,
@@ -194,13 +218,12 @@ std::string worse_than_inputs(const SurfaceFigures& result, const std::vector<Su
     worse.push_back(counted(result.pieces, "piece", "pieces") + " where " + std::to_string(pieces) + " would do");
   if (!rules.may_open && result.borders > before.borders)
     worse.push_back(counted(result.borders - before.borders, "open border", "open borders"));
-  if (!rules.may_cross)  // surfaces that lie beside each other may share an edge's place
-    flaws(&SurfaceFigures::nonmanifold, "edge of more than two faces", "edges of more than two faces");
+  flaws(&SurfaceFigures::nonmanifold, "edge of more than two faces", "edges of more than two faces");
   if (!rules.may_open)
     flaws(&SurfaceFigures::pinches, "vertex in which it touches itself", "vertices in which it touches itself");
   flaws(&SurfaceFigures::flipped, "edge between faces that look opposite ways",
         "edges between faces that look opposite ways");
-  if (!rules.may_cross) flaws(&SurfaceFigures::crossings, "pair of crossing faces", "pairs of crossing faces");
+  flaws(&SurfaceFigures::crossings, "pair of crossing faces", "pairs of crossing faces");
   const bool was_solid = std::all_of(inputs.begin(), inputs.end(), [](const auto& s) { return solid(s, 1); });
   if (!inputs.empty() && was_solid && solid(result, -1)) worse.push_back("its inside out");
   return enumerated(worse);

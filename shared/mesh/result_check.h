@@ -33,13 +33,20 @@ SurfaceFigures measure_surface(const Mesh& mesh, int threads = 0);
 /// Of several surfaces, each by itself.
 SurfaceFigures together(const std::vector<SurfaceFigures>& surfaces);
 
+/// Of a mesh's parts, each by itself: they may cross and touch each other.
+/// @param part  per face: the number of its part
+SurfaceFigures measure_parts(const Mesh& mesh, const std::vector<char>& part, int threads = 0);
+
+/// Takes the flaws of another mesh for known as well: the same surface as a
+/// filter makes it ready, with other coordinates here and there.
+void add_flaws(const SurfaceFigures& from, SurfaceFigures& to);
+
 /// What is no flaw in a result although the inputs do not have it.
 struct ResultRules {
-  bool joins = false;      ///< more is asked: the inputs become one piece
-  bool may_part = false;   ///< more pieces
-  bool may_open = false;   ///< more borders, which may meet in a vertex
-  bool may_cross = false;  ///< faces that cross, and edges of several surfaces in one place
-  bool moved = false;      ///< parts of the inputs lie elsewhere in it: flaws are compared by their number
+  bool joins = false;     ///< more is asked: the inputs become one piece
+  bool may_part = false;  ///< more pieces
+  bool may_open = false;  ///< more borders, which may meet in a vertex
+  bool moved = false;     ///< parts of the inputs lie elsewhere in it: flaws are compared by their number
 };
 
 /// Says what is worse in a result than in the inputs, as the end of a sentence

@@ -9,7 +9,6 @@
 #include "parts/base/files.h"
 #include "parts/base/memory.h"
 #include "parts/mesh/attributes.h"
-#include "parts/render/check_memory.h"
 #include "parts/render/depth_jump.h"
 #include "parts/render/pixel_faces.h"
 

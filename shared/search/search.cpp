@@ -124,6 +124,7 @@ class Searcher {
   std::vector<Eigen::Matrix3d> rotations() const;
   void search_everywhere(int from, int to);
   void propose(Entry& e, int scale, const Eigen::Matrix3d& rotation, const Correlation::Best& best) const;
+  align::IcpOptions icp_options(const Scale& scale, double overlap, double done) const;
   void refine(int level);
   void drop_worse_half();
   std::vector<Candidate> fit();
@@ -355,6 +356,16 @@ double Searcher::score(const align::Pose& pose, const ModelRaster& raster, const
   return std::sqrt((forth + back) / (weighted_area + back_area)) / surface_->radius();
 }
 
+align::IcpOptions Searcher::icp_options(const Scale& scale, double overlap, double done) const {
+  align::IcpOptions o;
+  o.samples = scale.samples;
+  o.iterations = scale.iterations;
+  o.overlap = overlap;
+  o.scale = options_.allow_scale;
+  o.done = done;
+  return o;
+}
+
 void Searcher::refine(int level) {
   const Scale& scale = plan_->scales[level];
   const int grid = std::min(std::max(level, 1), levels_ - 1);
@@ -363,13 +374,7 @@ void Searcher::refine(int level) {
     if (grid > 1) memory_.models->complete(e.model);
     const RasterTarget target(*e.raster, grid);
     for (Place& p : e.places) {
-      align::IcpOptions icp_options;
-      icp_options.samples = scale.samples;
-      icp_options.iterations = scale.iterations;
-      icp_options.overlap = 0.8;
-      icp_options.scale = options_.allow_scale;
-      icp_options.done = 1e-3;
-      p.pose = align::icp(samples_[level], target, p.pose, icp_options, poll).pose;
+      p.pose = align::icp(samples_[level], target, p.pose, icp_options(scale, 0.8, 1e-3), poll).pose;
       p.score = score(p.pose, *e.raster, target, false, level);
     }
     keep_best(e.places, std::size_t(scale.places));
@@ -384,14 +389,8 @@ std::vector<Candidate> Searcher::fit() {
     const Entry& e = entries_[i];
     const spatial::Surface model = spatial::make_surface(database_.load(e.model), {}, "database");
     const spatial::TriangleTree tree(model);
-    align::IcpOptions icp_options;
-    icp_options.samples = scale.samples;
-    icp_options.iterations = scale.iterations;
-    icp_options.overlap = 0.9;
-    icp_options.scale = options_.allow_scale;
-    icp_options.done = 1e-5;
     const std::vector<spatial::Sample>& samples = samples_[kFit];
-    const align::Pose pose = align::icp(samples, tree, e.places[0].pose, icp_options, poll).pose;
+    const align::Pose pose = align::icp(samples, tree, e.places[0].pose, icp_options(scale, 0.9, 1e-5), poll).pose;
     Candidate& c = found[i];
     c.model = e.model;
     c.score = score(pose, *e.raster, tree, true, kFit);

@@ -11,7 +11,7 @@ import rasters
 import shapes
 from lib import template
 
-FINE, OK, SENTENCE = {"ok", "flawed", "sentence"}, {"ok"}, {"sentence"}
+FINE, OK, SENTENCE = {"ok", "flawed", "untrusted", "sentence"}, {"ok", "untrusted"}, {"sentence"}
 
 
 def colorize_depth(case, folder):

@@ -12,7 +12,7 @@ import shapes
 from lib import template
 
 # Of so few examples a result may be said to be not trusted.
-FINE, OK, SENTENCE = {"ok", "flawed", "sentence"}, {"ok", "flawed"}, {"sentence"}
+FINE, OK, SENTENCE = {"ok", "flawed", "untrusted", "sentence"}, {"ok", "untrusted"}, {"sentence"}
 WIDTH, HEIGHT = 60, 80
 
 
@@ -97,7 +97,7 @@ def images(row, folder, color, seen):
     yield row("Image: of 1800 x 2400", OK, Image=large,
               Mask=rasters.save_image(folder / "large_mask.png", np.kron(255 * seen, np.ones((30, 30)))))
     noise = np.random.default_rng(1).integers(0, 255, (HEIGHT, WIDTH, 3))
-    yield image("noise", noise, OK, "untrusted", Mask=rasters.save_image(folder / "box.png", box(5, 5, 50, 70)))
+    yield image("noise", noise, {"untrusted"}, "untrusted", Mask=rasters.save_image(folder / "box.png", box(5, 5, 50, 70)))
     yield image("noise, no mask, segmented", noise, FINE, Mask="", Segment=True)
     yield row("Image: the database", SENTENCE, Image=folder / "models" / "egg_0.ply")
     yield row("Mask: of another size", SENTENCE, Mask=rasters.save_image(folder / "m.png", np.full((20, 20), 255)))

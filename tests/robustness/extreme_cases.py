@@ -8,7 +8,7 @@ import rasters
 import shapes
 from lib import template
 
-FINE, SENTENCE, HOST = {"ok", "flawed", "sentence"}, {"sentence"}, {"host"}
+FINE, SENTENCE, HOST = {"ok", "flawed", "untrusted", "sentence"}, {"sentence"}, {"host"}
 NAN = float("nan")
 
 

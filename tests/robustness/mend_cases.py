@@ -9,7 +9,7 @@ import nasty
 import shapes
 from lib import template
 
-FINE, OK, SENTENCE = {"ok", "flawed", "sentence"}, {"ok"}, {"sentence"}
+FINE, OK, SENTENCE = {"ok", "flawed", "untrusted", "sentence"}, {"ok"}, {"sentence"}
 
 
 def bean(seed):

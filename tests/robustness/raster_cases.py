@@ -10,7 +10,7 @@ import rasters
 import shapes
 from lib import template
 
-FINE, OK, SENTENCE = {"ok", "flawed", "sentence"}, {"ok"}, {"sentence"}
+FINE, OK, SENTENCE = {"ok", "flawed", "untrusted", "sentence"}, {"ok"}, {"sentence"}
 
 
 def depth_to_mesh(case, folder):

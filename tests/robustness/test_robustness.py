@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every filter x every input that nobody prepared, through meshlabserver.
 
-Prints a table and writes it as Markdown to the first argument, or to
-robustness.md in the current folder. Outcomes:
+Prints a table and writes it as Markdown to the argument that ends in .md, or
+to robustness.md in the current folder. Other arguments are parts of the rows
+to run; "write" records the outcomes in tests/data/robustness_outcomes.csv:
+a row that once was ok must stay so. Outcomes:
   ok        a result that passes the checks, and inputs that are as they were
   flawed    such a result that is worse than its inputs, which the log's last line says
+  untrusted such a result that the filter itself does not trust, and says so
   sentence  no result; one sentence says what is wrong and what to do
   host      MeshLab itself refuses or aborts before the filter runs
 and those that fail the test: crash, hang (over a minute), silent (no result
@@ -16,6 +19,7 @@ flaws are not the log's).
 import collections
 import concurrent.futures
 import copy
+import csv
 import hashlib
 import os
 import pathlib
@@ -36,7 +40,8 @@ from lib import box, template  # noqa: E402
 
 TIMEOUT = float(os.environ.get("PARTS_TIMEOUT", 60))  # seconds; more where the machine is shared
 MEMORY = 16 << 30  # of address space: a runaway ends here, not in the machine's swap
-FINE = {"ok", "flawed", "sentence"}
+FINE = {"ok", "flawed", "untrusted", "sentence"}
+RECORD = lib.ROOT / "tests" / "data" / "robustness_outcomes.csv"
 Case = collections.namedtuple("Case", "filter input layers steps allowed closed result memory", defaults=[MEMORY])
 
 NAN, INF = float("nan"), float("inf")
@@ -96,10 +101,10 @@ def align(name, layers=None, allowed=FINE, **values):
                 [template("align_part_in_whole", **values)], allowed, False, "placed")
 
 
-def deform(name, layers=None, allowed=FINE, closed=False, **values):
+def deform(name, layers=None, allowed=FINE, closed=False, result="composed", **values):
     values = dict(dict(Pivot=(0, 0, 0), Axis=(0, 1, 0), Angle=-40), **values)
     return Case("deform", name, [arm()] if layers is None else layers, [template("deform", **values)], allowed, closed,
-                "composed")
+                result)
 
 
 # What is closed once it has been cleaned.
@@ -196,8 +201,11 @@ def volumes():
 def numbers():
     for resolution, allowed in ((1, FINE), (2, FINE), (3, FINE), (-1, {"sentence"}), (100000, {"sentence"}),
                                 (2000000000, {"sentence"})):
-        yield compose(f"resolution {resolution}", None, allowed, Resolution=resolution, Cut="Thesis")
-        yield deform(f"resolution {resolution}", None, allowed, Resolution=resolution, Cut="Thesis")
+        yield compose(f"resolution {resolution}, Thesis", None, allowed, Resolution=resolution, Cut="Thesis")
+        yield deform(f"resolution {resolution}, Thesis", None, allowed, Resolution=resolution, Cut="Thesis")
+        unused = {"ok"} if 0 < resolution <= 100000 else {"sentence"}  # the cut on the meshes has no voxels
+        yield compose(f"resolution {resolution}", None, unused, unused == {"ok"}, Resolution=resolution)
+        yield deform(f"resolution {resolution}", None, unused, unused == {"ok"}, Resolution=resolution)
     for name, values in (("negative iterations", dict(SmoothIterations=-1)), ("weight NaN", dict(SmoothWeight="nan")),
                          ("weight 5", dict(SmoothWeight=5)), ("weight -1", dict(SmoothWeight=-1)),
                          ("distance NaN", dict(SmoothDistance="nan")), ("distance inf", dict(SmoothDistance="inf")),
@@ -220,7 +228,7 @@ def numbers():
                          ("pivot inf", dict(Pivot=(INF, 0, 0)))):
         yield deform(name, None, {"sentence"}, **values)
     yield deform("a pose that moves nothing", None, FINE, Angle=0)
-    yield deform("a pose that moves all away", None, {"ok"}, Translation=(100, 0, 0))  # and a warning: mlx.deform
+    yield deform("a pose that moves all away", None, {"ok"}, True, "warned", Translation=(100, 0, 0))
     yield deform("angle 1e9", None, FINE, Angle=1e9)
     yield deform("axis 1e-20", None, {"ok"}, closed=True, Axis=(0, 1e-20, 0))
     yield deform("scale 1e6", None, FINE, Scale=1e6)
@@ -288,12 +296,15 @@ def checked(case, result):
     wrong = untold(mesh, result.figures())
     if wrong:
         return "bad", wrong
-    warning = result.warnings[-1] if result.warnings else ""
-    if warning.startswith("The result "):
-        return "flawed", warning
+    flawed = [w for w in result.warnings if w.startswith('The result "')]
+    if flawed:
+        return "flawed", flawed[-1]
+    if case.result == "warned" and not result.warnings:
+        return "bad", "no warning"
     if case.closed and not (closed(mesh) or closed(lib.welded(mesh))):
         return "bad", "not a closed manifold, and no warning"
-    return "ok", f"{len(mesh.f)} faces"
+    untrusted = [w for w in result.warnings if "not to be trusted" in w]
+    return ("untrusted", untrusted[-1]) if untrusted else ("ok", f"{len(mesh.f)} faces")
 
 
 def digest(file):
@@ -334,7 +345,7 @@ def outcome(case):
     found = ended(case, result, saved)
     if any(not f.is_file() or digest(f) != was for f, was in read.items()):
         return "changed", "an input file is not as it was"
-    if found[0] not in ("ok", "flawed", "crash", "hang") and files_of(case) != written:
+    if found[0] not in ("ok", "flawed", "untrusted", "crash", "hang") and files_of(case) != written:
         return "changed", "failed, but wrote " + ", ".join(set(files_of(case)) - set(written) or {"over a file"})
     if found[0] != "hang" and litter(result):
         return "changed", "left " + ", ".join(litter(result))
@@ -359,25 +370,44 @@ def ended(case, result, saved):
     return ("sentence" if good else "silent"), sentence
 
 
+def recorded():
+    with open(RECORD, newline="") as file:
+        return {(slug, name): was for slug, name, was in csv.reader(file)}
+
+
+def record(rows):
+    """The new outcomes; of rows that were not run the old ones."""
+    known = recorded() if RECORD.exists() else {}
+    known.update({(row[0], row[1]): row[2] for row in rows})
+    with open(RECORD, "w", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows([*key, was] for key, was in sorted(known.items()))
+
+
 def main():
-    only = [a for a in sys.argv[1:] if not a.endswith(".md")]
+    only = [a for a in sys.argv[1:] if not a.endswith(".md") and a != "write"]
+    before = recorded() if RECORD.exists() else {}
     page = next((a for a in sys.argv[1:] if a.endswith(".md")), "robustness.md")
     cases = [c for c in all_cases() if all(word in f"{c.filter}: {c.input}" for word in only)]
     rows, failed = [], []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for case, (found, note) in zip(cases, pool.map(outcome, cases)):
-            fine = found in case.allowed
+            was_ok = before.get((case.filter, case.input)) == "ok" and "write" not in sys.argv
+            fine = found in case.allowed and (found == "ok" or not was_ok)
             rows.append((case.filter, case.input, found if fine else found.upper(), note))
             line = "{:4} {:20} {:45} {:9} {}".format("" if fine else "FAIL", *rows[-1])
             failed += [] if fine else [line]
             print(line, flush=True)
+    if "write" in sys.argv and not failed:
+        record(rows)
     counts = collections.Counter(row[2] for row in rows)
     summary = ", ".join(f"{n} {what}" for what, n in counts.most_common())
     with open(page, "w") as out:
         out.write(f"# Inputs that nobody prepared\n\nWritten by `tests/robustness/test_robustness.py`: {len(rows)} runs "
                   f"of `meshlabserver`, {summary}.\n\n- **ok**: a result that passes the checks; the inputs are as "
-                  "they were\n- **flawed**: a result with a warning that says what its inputs do not have\n- **sentence**: no result, and one sentence that says why and what to do; the document "
-                  "is as it was\n- **host**: MeshLab itself stops before the filter runs\n\n"
+                  "they were\n- **flawed**: a result with a warning that says what its inputs do not have\n"
+                  "- **untrusted**: a result with a warning that it is not to be trusted\n- **sentence**: no result, "
+                  "and one sentence that says why and what to do; the document is as it was\n"
+                  "- **host**: MeshLab itself stops before the filter runs\n\n"
                   "| filter | input | outcome | |\n|---|---|---|---|\n")
         for row in rows:
             out.write("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n")

@@ -14,7 +14,6 @@
 #include "parts/colorize/posed_mesh.h"
 #include "parts/io/mesh_io.h"
 #include "parts/render/atlas.h"
-#include "parts/render/check_memory.h"
 #include "support/folder.h"
 #include "support/shapes.h"
 
@@ -110,18 +109,6 @@ TEST(HiddenColors, WhatCannotBeContinuedIsSaid) {
   for (std::size_t v = 0; v < known.size(); ++v) {
     if (known[v]) continue;
     EXPECT_NEAR(color[v][0], 200 / 255.f, 1e-3) << "the model's own";
-  }
-}
-
-TEST(CheckMemory, WhatIsNotKnownRefusesNothing) {
-  EXPECT_NO_THROW(render::check_memory("A texture", 1e15, {}, "choose a smaller one"));
-  EXPECT_NO_THROW(render::check_memory("A texture", 1e15, 0, "choose a smaller one"));
-  EXPECT_NO_THROW(render::check_memory("A texture", 1e6, 1e6, "choose a smaller one"));
-  try {
-    render::check_memory("A texture", 3e9, 2e6, "choose a smaller one");
-    ADD_FAILURE();
-  } catch (const UserError& e) {
-    EXPECT_STREQ(e.what(), "A texture needs about 3.0 GB of memory, and 0.0 GB are free; choose a smaller one.");
   }
 }
 

@@ -45,8 +45,8 @@ TEST(ComposeRandom, MeshKeepsItsPromises) {
   compose_random_scenes(cut::Cut::Mesh, 0, 70, tally);
   RecordProperty("without_new_self_intersections", tally.clean);
   EXPECT_LE(tally.refused, 2);
-  // Scenes are turned at random; the cut cannot join all of them without a fold.
-  EXPECT_GE(tally.clean, (tally.scenes - tally.refused) * 75 / 100);
+  // Scenes are turned at random; the cut cannot join all of them without a fold. As many as on 2026-11-25.
+  EXPECT_GE(tally.clean, 68);
 }
 
 TEST(ComposeRandom, ThesisKeepsItsPromises) {
@@ -54,7 +54,7 @@ TEST(ComposeRandom, ThesisKeepsItsPromises) {
   compose_random_scenes(cut::Cut::Thesis, 0, 30, tally);
   RecordProperty("without_new_self_intersections", tally.clean);
   EXPECT_LE(tally.refused, 2);
-  EXPECT_GE(tally.clean, (tally.scenes - tally.refused) * 40 / 100);
+  EXPECT_GE(tally.clean, 23);  // as many as on 2026-11-25
 }
 
 TEST(ComposeRandom, TheSameBytesForAnyNumberOfThreads) {

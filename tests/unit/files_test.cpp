@@ -196,6 +196,49 @@ TEST_F(Files, AFolderIsLockedByOneAtATime) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(Files, NobodyWaitsForEverForALock) {
+  const FolderLock stopped(folder);
+  const auto start = std::chrono::steady_clock::now();
+  const FolderLock late(folder, std::chrono::milliseconds(50));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST_F(Files, OfTwoRunsDoNotMix) {
+  put("a/1", "old");
+  put("b/2", "old");
+  auto other = std::make_unique<FolderLock>(folder / "b");
+  std::atomic<bool> done{false};
+  std::thread run([&] {
+    OutputFiles files;
+    files.lock(folder / "a");  // once more by commit()
+    files.add(at("b/2"), "new");
+    files.add(at("a/1"), "new");
+    files.commit();
+    done = true;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(done);
+  EXPECT_EQ(contents(at("a/1")) + contents(at("b/2")), "oldold") << "placed beside the other run's";
+  other.reset();
+  run.join();
+  EXPECT_EQ(contents(at("a/1")) + contents(at("b/2")), "newnew");
+  const FolderLock free(folder / "a", std::chrono::milliseconds(0));
+  EXPECT_EQ(names(), (std::set<std::string>{"a", "a/1", "b", "b/2"}));
+}
+
+TEST_F(Files, AFolderThatAnotherRunTookAwayIsMadeAgain) {
+  OutputFiles files;
+  {
+    OutputFiles fails;
+    fails.make_folder(folder / "out");
+    files.make_folder(folder / "out");
+  }
+  ASSERT_FALSE(fs::exists(folder / "out"));
+  files.add(at("out/file"), "here");
+  files.commit();
+  EXPECT_EQ(contents(at("out/file")), "here");
+}
+
 TEST_F(Files, ManyFilesAtOnce) {
   OutputFiles files;
   for (int i = 0; i < 100; ++i) files.add(at(std::to_string(i)), "x");
@@ -227,6 +270,14 @@ TEST_F(Memory, OfTheMachineAndOfControlGroups) {
   EXPECT_EQ(free(), 0) << "none is not the same as not known";
   put("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "9223372036854771712\n");
   EXPECT_EQ(free(), 8192e6) << "no limit";
+}
+
+TEST_F(Memory, WhatIsNotKnownRefusesNothing) {
+  EXPECT_NO_THROW(check_memory("A texture", 1e15, {}, "choose a smaller one"));
+  EXPECT_NO_THROW(check_memory("A texture", 1e15, 0, "choose a smaller one"));
+  EXPECT_NO_THROW(check_memory("A texture", 1e6, 1e6, "choose a smaller one"));
+  EXPECT_EQ(sentence([] { check_memory("A texture", 3e9, 2e6, "choose a smaller one"); }),
+            "A texture needs about 3.0 GB of memory, and 2.0 MB are free; choose a smaller one.");
 }
 
 TEST_F(Memory, OfThisProcess) {

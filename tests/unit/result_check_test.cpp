@@ -7,6 +7,7 @@
 #include <random>
 
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/slits.h"
 #include "support/shapes.h"
 
 namespace parts {
@@ -116,6 +117,18 @@ TEST(ResultCheck, FlippedNeighboursAndTheInsideOut) {
   EXPECT_EQ(worse(without_faces(inside_out, 0, 200), {without_faces(sphere(), 0, 200)}), "its inside out");
 }
 
+TEST(ResultCheck, ASheetThatIsBentTheOtherWayIsNotInsideOut) {
+  const auto bent = [](double by) {
+    Mesh sheet = box({-1, -1, 0}, {1, 1, 0.1}, 8);
+    sheet = mesh::take_faces(sheet, faces_where(sheet, [](const Vec3& c) { return c.z() > 0.0999; }));
+    for (Vec3& p : sheet.vertices) p.z() = by * p.x() * p.x();
+    return sheet;
+  };
+  EXPECT_LT(measure_surface(bent(-0.2)).volume * measure_surface(bent(0.2)).volume, 0);
+  EXPECT_EQ(worse(bent(0.2), {bent(-0.2)}), "");
+  EXPECT_EQ(worse(bent(-0.2), {bent(0.2)}), "");
+}
+
 TEST(ResultCheck, PlacesWhereItTouchesItself) {
   const Mesh a = box({0, 0, 0}, {1, 1, 1}), b = box({1, 1, 1}, {2, 2, 2});
   const SurfaceFigures s = measure_surface(both(a, b));
@@ -129,11 +142,49 @@ TEST(ResultCheck, PlacesWhereItTouchesItself) {
 
 TEST(ResultCheck, CrossingFaces) {
   const Mesh a = sphere(), b = moved(sphere(), {1, 0, 0});
-  ResultRules free;
-  free.may_cross = true;
   EXPECT_NE(worse(both(a, b), {a, b}).find("pairs of crossing faces"), std::string::npos);
-  EXPECT_EQ(worse(both(a, b), {a, b}, free), "");
   EXPECT_EQ(measure_surface(both(a, b), 1).crossings, measure_surface(both(a, b), 5).crossings);
+}
+
+/// Parts that lie beside each other, the first so many faces one of them.
+std::string worse_parts(const Mesh& result, int first, const std::vector<Mesh>& inputs) {
+  std::vector<char> part(result.faces.size(), 1);
+  std::fill(part.begin(), part.begin() + first, 0);
+  std::vector<SurfaceFigures> before;
+  for (const Mesh& m : inputs) before.push_back(measure_surface(m));
+  return mesh::worse_than_inputs(mesh::measure_parts(result, part), before, {});
+}
+
+TEST(ResultCheck, PartsMayCrossAndTouchButEachIsChecked) {
+  const Mesh a = sphere(), b = moved(sphere(), {1, 0, 0});
+  EXPECT_EQ(worse_parts(both(a, b), a.face_count(), {a, b}), "");
+  const Mesh left = box({0, 0, 0}, {1, 1, 1}), right = box({1, 0, 0}, {2, 1, 1});  // they share a side
+  EXPECT_NE(worse(both(left, right), {left, right}).find("edges of more than two faces"), std::string::npos);
+  EXPECT_EQ(worse_parts(both(left, right), left.face_count(), {left, right}), "");
+  Mesh fin = left;
+  fin.vertices.push_back({0.5, 0.5, 3});
+  fin.faces.push_back({fin.faces[0][0], fin.faces[0][1], fin.vertex_count() - 1});
+  EXPECT_NE(worse_parts(both(fin, right), fin.face_count(), {left, right}).find("1 edge of more than two faces"),
+            std::string::npos);
+  const Mesh crossed = both(a, b);
+  EXPECT_NE(worse_parts(both(crossed, right), crossed.face_count(), {a, b, right}).find("crossing faces"),
+            std::string::npos);
+}
+
+TEST(ResultCheck, RoundingAtASlitMovesKnownFlaws) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> off(-1.5e-6, 1.5e-6);
+  Mesh crossed = soup(both(sphere(), moved(sphere(), {1, 0, 0})));
+  for (Vec3& p : crossed.vertices)
+    for (int k = 0; k < 3; ++k) p[k] = std::round((p[k] + off(random)) * 1e6) / 1e6;
+  const Mesh mended = mesh::prepare_without_slits(crossed);
+  SurfaceFigures before = measure_surface(crossed);
+  const SurfaceFigures result = measure_surface(mended);
+  EXPECT_NE(mesh::worse_than_inputs(result, {before}, {}), "");
+  mesh::add_flaws(result, before);
+  EXPECT_EQ(mesh::worse_than_inputs(result, {before}, {}), "");
+  const Mesh more = both(mended, moved(sphere(), {1.5, 0, 0}));
+  EXPECT_NE(mesh::worse_than_inputs(measure_surface(more), {before}, {}).find("crossing faces"), std::string::npos);
 }
 
 TEST(ResultCheck, CoordinatesThatAreNoNumbers) {
