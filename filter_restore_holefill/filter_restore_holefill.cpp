@@ -4,6 +4,7 @@
 // core, new layers.
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "parameters.h"
 #include "parts/base/error.h"
@@ -48,10 +49,10 @@ mend::MendOptions query_options(const Inputs& inputs) {
   return o;
 }
 
-io::ModelDatabase database_of(const Inputs& inputs, Progress& progress) {
+/// None where the scan itself is to be the database.
+std::optional<io::ModelDatabase> database_of(const Inputs& inputs, Progress& progress) {
   const std::string path = inputs.text("Database");
-  if (path.empty())
-    throw UserError("No model database is given; choose a MeshLab project (.mlp), or type the path of a folder.");
+  if (path.empty()) return {};
   return io::ModelDatabase(path, progress);
 }
 
@@ -113,8 +114,8 @@ Outcome find(const Inputs& inputs, Progress& progress) {
   const Mesh scan = surface_of(layer);
   mend::MendOptions options = query_options(inputs);
   options.fill = options.region.by == mend::RegionBy::Holes;  // with Selected or all: flaws where any are selected
-  const io::ModelDatabase database = database_of(inputs, progress);
-  std::vector<mend::Found> found = mend::find_models(scan, database, options, progress);
+  const std::optional<io::ModelDatabase> database = database_of(inputs, progress);
+  std::vector<mend::Found> found = mend::find_models(scan, database ? &*database : nullptr, options, progress);
   log_found(found, progress);
   Outcome outcome;
   const bool several = !found.empty() && found.back().region > 0;
@@ -143,9 +144,9 @@ Outcome mend(const Inputs& inputs, Progress& progress, bool fill) {
   o.fitting.blend = inputs.integer("Blend");
   o.match_color = inputs.flag("MatchColour");
   const bool add_candidate = inputs.flag("AddCandidate");
-  const io::ModelDatabase database = database_of(inputs, progress);
+  const std::optional<io::ModelDatabase> database = database_of(inputs, progress);
 
-  mend::Mended mended = mend::mend_scan(scan, database, options, progress);
+  mend::Mended mended = mend::mend_scan(scan, database ? &*database : nullptr, options, progress);
   log_mended(mended, fill, progress);
   log_value(progress, "regions", double(mended.regions.size()));
   log_value(progress, "mended", double(mended.regions.size()) - mended.count(mend::RegionReport::End::Left));

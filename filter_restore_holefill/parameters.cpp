@@ -23,7 +23,8 @@ std::vector<Parameter> query(const Scene& scene, mend::RegionBy by, int candidat
   list.push_back(open_file("Database", {"mlp", "ply", "obj", "off", "stl"}, "Model database",
                            "Complete models of the same kind: a MeshLab project (.mlp), or a folder of .ply, .obj, "
                            ".off and .stl files (in the dialog choose any file in it, in scripts the folder). What the "
-                           "search computes is kept beside it for the next time."));
+                           "search computes is kept beside it for the next time. Left empty, the scan itself is the "
+                           "database: the other half of what is symmetric, or another place that is alike."));
   list.push_back(choice("Region", int(by), {"Around the selection", "Around all holes", "Box", "Selected or all"},
                         "Where",
                         "Around the selection: the selected faces are the flaws, or lie beside the holes. Around all "

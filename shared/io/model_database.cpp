@@ -129,13 +129,18 @@ ModelDatabase::ModelDatabase(const std::string& given, Progress& progress) : pat
   if (models_.empty()) throw UserError(database + "has no mesh that can be read; add models to the project.");
 }
 
+ModelDatabase::ModelDatabase(std::vector<std::pair<std::string, Mesh>> models) {
+  for (auto& [name, mesh] : models)
+    models_.push_back({name, {}, Eigen::Matrix4d::Identity(), std::make_shared<const Mesh>(std::move(mesh))});
+}
+
 void log_missing(const std::string& model, const std::vector<std::string>& missing, Progress& progress) {
   for (const std::string& name : missing) progress.log("missing: " + model + " (it names \"" + name + "\")");
 }
 
 Mesh ModelDatabase::load(int model, const Poll& poll, std::vector<std::string>* missing) const {
   const Model& m = models_.at(std::size_t(model));
-  Mesh mesh = read_mesh(m.file, poll, missing);
+  Mesh mesh = m.mesh ? *m.mesh : read_mesh(m.file, poll, missing);
   use_world_space(mesh, m.matrix);
   const std::string why = flaw(mesh);
   if (!why.empty()) throw UserError("The model \"" + m.name + "\" " + why + "; repair it or take it out.");

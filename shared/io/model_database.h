@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "parts/base/files.h"
@@ -21,6 +23,9 @@ class ModelDatabase {
   /// @param given  the project or folder; a mesh file stands for its folder
   /// @throws UserError  no such folder or project, or no model in it
   ModelDatabase(const std::string& given, Progress& progress);
+
+  /// Of models that are in memory, not in files. Their names are unique.
+  explicit ModelDatabase(std::vector<std::pair<std::string, Mesh>> models);
 
   const std::string& path() const { return path_; }
   int size() const { return int(models_.size()); }
@@ -43,6 +48,7 @@ class ModelDatabase {
   struct Model {
     std::string name, file;
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    std::shared_ptr<const Mesh> mesh = nullptr;  ///< of a model without a file
   };
   std::string path_;
   std::vector<Model> models_;

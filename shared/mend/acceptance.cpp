@@ -54,12 +54,21 @@ bool as_manifold(const Trial& t, const Welded& before, const Welded& after) {
   });
 }
 
+/// A few faces of the stitch, where scan and model differ at the rim, may lie
+/// somewhat farther off.
 bool near_model(const Trial& t) {
+  constexpr double kFarthest = 3, kShare = 0.05;
   const spatial::ClosestFace on_model(t.model);
+  double area = 0, off = 0;
   int hint = 0;
-  for (int f = 0; f < t.after.face_count(); ++f)
-    if (t.source[f] < 0 && on_model(t.after.center(f), hint).distance > t.near) return false;
-  return true;
+  for (int f = 0; f < t.after.face_count(); ++f) {
+    if (t.source[f] >= 0) continue;
+    const double distance = on_model(t.after.center(f), hint).distance;
+    if (distance > kFarthest * t.near) return false;
+    area += t.after.area(f);
+    if (distance > t.near) off += t.after.area(f);
+  }
+  return off <= kShare * area;
 }
 
 bool clear_of_scan(const Trial& t) {
@@ -92,6 +101,8 @@ const char* words(Objection objection) {
       return "the patches would lie off the models";
     case Objection::Crosses:
       return "the patches would cross the scan";
+    case Objection::Unlike:
+      return "a smooth surface goes better with the scan around it";
     case Objection::None:
       break;
   }

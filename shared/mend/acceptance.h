@@ -15,6 +15,7 @@ enum class Objection {
   NonManifold,   ///< an edge or vertex is no manifold, and was not so before
   FarFromModel,  ///< new faces lie off the model
   Crosses,       ///< new faces cross the scan's
+  Unlike,        ///< a smooth surface foretells the scan beside it better than the model does
   None,          ///< it is accepted
 };
 

@@ -6,6 +6,7 @@
 #include "parts/base/parallel.h"
 #include "parts/base/tasks.h"
 #include "parts/mesh/attributes.h"
+#include "parts/mesh/manifold.h"
 #include "parts/mesh/slits.h"
 
 namespace parts::mend {
@@ -41,7 +42,7 @@ void ModelFitter::bring(int model) {
   Brought& brought = brought_[model];
   brought.done = true;
   Mesh& mesh = brought.posed.mesh;
-  mesh = surroundings(mesh::prepare_without_slits(models_[model].mesh), region_);
+  mesh = mesh::made_manifold(surroundings(mesh::prepare_without_slits(models_[model].mesh), region_));
   if (mesh.faces.empty()) return;
   if (!target_.empty()) agree_on_sides(mesh, target_.closest(), 0.5 * region_.size());
   FitOptions o;

@@ -2,14 +2,22 @@
 #include "parts/mend/mend.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "parts/mend/inner_wall.h"
+#include "parts/mend/itself.h"
 #include "parts/mend/small_holes.h"
+#include "parts/mesh/attributes.h"
 
 namespace parts::mend {
 namespace {
 
 using End = RegionReport::End;
+
+// Without a database, by how much the scan's mirror image and other places of it may miss what is known, of what a
+// smooth surface does: half of a face vouches for the other half, another place for little.
+constexpr double kMirrorMisses = 1.05, kPlaceMisses = 0.5;
+constexpr int kSymmetry = 5;  // per cent of the time, without a database
 
 std::vector<search::Candidate> search_around(const Scan& scan, const Region& region, const io::ModelDatabase& database,
                                              const search::SearchOptions& options, search::SearchMemory& memory,
@@ -26,7 +34,7 @@ std::vector<Region> regions_of(const Scan& scan, const MendOptions& options, Pro
 /// Mends the regions of a scan one after the other.
 class Mending {
  public:
-  Mending(const Mesh& input, const io::ModelDatabase& database, const MendOptions& options, Progress& progress);
+  Mending(const Mesh& input, const io::ModelDatabase* database, const MendOptions& options, Progress& progress);
   Mended run();
 
  private:
@@ -35,11 +43,13 @@ class Mending {
   void mend(std::size_t i, Progress part);
   Restored from_models(std::size_t i, const Region& region, Progress part);
   Restored found_and_pasted(std::size_t i, const Scan& scan, const Region& region, Progress part);
+  Restored from_itself(std::size_t i, const Scan& scan, const Region& region, Progress part);
+  Restored pasted(std::size_t i, const Scan& scan, const Region& region, std::vector<OwnPlace> places, Progress part);
   void accept(std::size_t i, Restored restored);
   bool changed_since(std::size_t i, std::size_t from) const;
   bool worth_another_try(std::size_t i) const;
 
-  const io::ModelDatabase& database_;
+  const io::ModelDatabase* database_;
   const MendOptions& options_;
   Progress& progress_;
   search::SearchOptions search_options_;
@@ -49,6 +59,7 @@ class Mending {
   const Scan first_;
   Scan scan_;  ///< now
   std::vector<Region> regions_;
+  std::optional<Itself> itself_;               ///< where there is no database
   std::vector<std::vector<Vec3>> other_wall_;  ///< per region: rim_in_other_wall()
   std::vector<Objection> objection_;           ///< to each region's best model
   std::vector<Box> changed_;                   ///< where patches were made, in their order
@@ -56,7 +67,7 @@ class Mending {
   Mended out_;
 };
 
-Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const MendOptions& options, Progress& progress)
+Mending::Mending(const Mesh& input, const io::ModelDatabase* database, const MendOptions& options, Progress& progress)
     : database_(database),
       options_(options),
       progress_(progress),
@@ -72,6 +83,11 @@ Mending::Mending(const Mesh& input, const io::ModelDatabase& database, const Men
   if (options.restore.fitting.fit_to_rim)
     search_options_.candidates = std::max(search_options_.candidates, options.restore.fitting.blend);
   out_.chains = first_.chains(), out_.crumbs = first_.crumbs();
+  if (!database_) {
+    Progress looking = progress_.part(0, kSymmetry);
+    itself_.emplace(first_, regions_, options.search.threads, looking);
+    restore_options_.fitting.blend = 1;
+  }
   for (const Region& region : regions_) {
     other_wall_.push_back(rim_in_other_wall(first_, region));
     RegionReport report;
@@ -145,17 +161,47 @@ bool Mending::changed_since(std::size_t i, std::size_t from) const {
 }
 
 Restored Mending::found_and_pasted(std::size_t i, const Scan& scan, const Region& region, Progress part) {
+  if (!database_) return from_itself(i, scan, region, part);
+  Progress searching = part.part(0, 50);
+  std::vector<OwnPlace> places;
+  for (const search::Candidate& c : search_around(scan, region, *database_, search_options_, memory_, searching))
+    places.push_back({{mesh::transformed(database_->load(c.model), c.placement), database_->name(c.model)}, c.score});
+  return pasted(i, scan, region, std::move(places), part.part(50, 100));
+}
+
+/// The mirror image first, else another place that is alike.
+Restored Mending::from_itself(std::size_t i, const Scan& scan, const Region& region, Progress part) {
+  Objection why = Objection::NoSurface;
+  for (bool mirror : {true, false}) {
+    Progress searching = part.part(30, 60);
+    restore_options_.must_foretell = mirror ? kMirrorMisses : kPlaceMisses;
+    try {
+      std::vector<OwnPlace> places =
+          mirror ? itself_->mirror_images(region) : itself_->similar_places(scan, region, search_options_, searching);
+      if (!places.empty())
+        return pasted(i, scan, region, std::move(places), mirror ? part.part(0, 30) : part.part(60, 100));
+    } catch (const NotMended& e) {
+      why = std::max(why, e.objection);
+    } catch (const UserError&) {  // nothing that could be compared
+    }
+  }
+  throw NotMended(std::string("Neither the scan's own mirror image nor another place of it shows what belongs ") +
+                      (options_.fill ? "into the hole" : "in place of the flaw") +
+                      (why == Objection::NoSurface ? "" : std::string(" (") + words(why) + ")") +
+                      "; give a Database of models of the same kind.",
+                  why);
+}
+
+Restored Mending::pasted(std::size_t i, const Scan& scan, const Region& region, std::vector<OwnPlace> places,
+                         Progress part) {
   RegionReport& report = out_.regions[i];
-  Progress searching = part.part(0, 50), mending = part.part(50, 100);
-  const std::vector<search::Candidate> found =
-      search_around(scan, region, database_, search_options_, memory_, searching);
   report.candidates.clear();
   std::vector<PlacedModel> models;
-  for (const search::Candidate& c : found) {
-    report.candidates.push_back({database_.name(c.model), c.score});
-    models.push_back({placed(database_.load(c.model), c.placement), database_.name(c.model)});
+  for (OwnPlace& p : places) {
+    report.candidates.push_back({p.model.name, p.score});
+    models.push_back(std::move(p.model));
   }
-  return mend_region(scan, region, models, restore_options_, mending);
+  return mend_region(scan, region, models, restore_options_, part);
 }
 
 /// The scan from now on.
@@ -186,7 +232,7 @@ Mended Mending::run() {
   for (std::size_t i = 0; i < regions_.size(); ++i)
     if (out_.regions[i].end == End::Left) now.push_back(i);
   constexpr int kFirstRound = 90;  // per cent of the time
-  for (const auto& [from, to] : {std::pair(0, kFirstRound), std::pair(kFirstRound, 100)}) {
+  for (const auto& [from, to] : {std::pair(database_ ? 0 : kSymmetry, kFirstRound), std::pair(kFirstRound, 100)}) {
     const int n = int(now.size());
     for (int k = 0; k < n; ++k)
       mend(now[k], progress_.part(from + (to - from) * k / n, from + (to - from) * (k + 1) / n));
@@ -236,28 +282,34 @@ std::string summary(const Mended& mended, bool fill) {
   return text + ".";
 }
 
-Mesh placed(Mesh mesh, const Eigen::Affine3d& placement) {
-  const Eigen::Matrix3f turn = placement.linear().cast<float>();
-  for (Vec3& v : mesh.vertices) v = placement * v;
-  for (Eigen::Vector3f& n : mesh.vertex_normal) n = (turn * n).normalized();
-  return mesh;
-}
-
-std::vector<Found> find_models(const Mesh& input, const io::ModelDatabase& database, const MendOptions& options,
+std::vector<Found> find_models(const Mesh& input, const io::ModelDatabase* database, const MendOptions& options,
                                Progress& progress) {
   const Scan scan(input);
   const std::vector<Region> regions = regions_of(scan, options, progress);
+  std::optional<Itself> itself;
+  if (!database) itself.emplace(scan, regions, options.search.threads, progress);
   std::vector<Found> all;
   search::SearchMemory memory;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     Progress part = progress.part(int(100 * i / regions.size()), int(100 * (i + 1) / regions.size()));
-    for (const search::Candidate& c : search_around(scan, regions[i], database, options.search, memory, part))
-      all.push_back({int(i), placed(database.load(c.model), c.placement), database.name(c.model), c.score});
+    const auto add = [&](Mesh mesh, const std::string& name, double score) {
+      all.push_back({int(i), std::move(mesh), name, score});
+    };
+    if (database)
+      for (const search::Candidate& c : search_around(scan, regions[i], *database, options.search, memory, part))
+        add(mesh::transformed(database->load(c.model), c.placement), database->name(c.model), c.score);
+    else
+      for (OwnPlace& p : itself->places(scan, regions[i], options.search, part))
+        add(std::move(p.model.mesh), p.model.name, p.score);
   }
+  if (all.empty())
+    throw UserError(
+        "The scan has neither a mirror image nor another place like the one around the region; give a "
+        "Database of models of the same kind.");
   return all;
 }
 
-Mended mend_scan(const Mesh& scan, const io::ModelDatabase& database, const MendOptions& options, Progress& progress) {
+Mended mend_scan(const Mesh& scan, const io::ModelDatabase* database, const MendOptions& options, Progress& progress) {
   return Mending(scan, database, options, progress).run();
 }
 

@@ -28,8 +28,9 @@ struct Found {
 
 /// The models most like the scan around its flaws and holes, best first, for
 /// each region in turn. Regions around flaws where the selection holds no hole.
+/// @param database  none: the scan itself, and its mirror image
 /// @throws UserError, Cancelled
-std::vector<Found> find_models(const Mesh& scan, const io::ModelDatabase& database, const MendOptions& options,
+std::vector<Found> find_models(const Mesh& scan, const io::ModelDatabase* database, const MendOptions& options,
                                Progress& progress);
 
 struct Ranked {
@@ -66,13 +67,11 @@ struct Mended {
 /// Restores every flaw or fills every hole of a scan, each from its own best
 /// match. Of several, those that no model fits are left as they are, and
 /// reported so.
+/// @param database  none: the scan itself, and its mirror image
 /// @throws UserError  none could be mended; @throws Cancelled
-Mended mend_scan(const Mesh& scan, const io::ModelDatabase& database, const MendOptions& options, Progress& progress);
+Mended mend_scan(const Mesh& scan, const io::ModelDatabase* database, const MendOptions& options, Progress& progress);
 
 /// In words what was mended, and what is as it was and why.
 std::string summary(const Mended& mended, bool fill);
-
-/// A mesh moved by a similarity, its normals turned.
-Mesh placed(Mesh mesh, const Eigen::Affine3d& placement);
 
 }  // namespace parts::mend

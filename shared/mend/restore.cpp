@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "parts/mend/flaw.h"
+#include "parts/mend/foresight.h"
 #include "parts/mend/paste.h"
 #include "parts/mend/patch_color.h"
 #include "parts/mend/thesis_cut.h"
@@ -197,7 +198,7 @@ Restored Mender::operator()(Progress& progress) {
     // Most often the first is accepted: it has most of the time.
     const auto percent = [](int done) { return int(100 * (1 - std::pow(0.4, done))); };
     Progress trying = progress.part(percent(m), percent(m + 1));
-    Progress fitting = trying.part(0, 70), pasting = trying.part(70, 100);
+    Progress fitting = trying.part(0, 70), pasting = trying.part(70, 85);
     Fit fit = fitter(m, fitting);
     if (fit.mesh.faces.empty()) continue;
     take_kind_of_colors(scan_.mesh(), fit.mesh);
@@ -208,6 +209,14 @@ Restored Mender::operator()(Progress& progress) {
     } else if (const Objection why = attempt(opened(fit, constraints), fit, out); why != Objection::None) {
       best = std::max(best, why);
       continue;
+    }
+    if (options_.must_foretell > 0) {
+      Progress judging = trying.part(85, 100);
+      const Foresight sight = foresee(scan_, region_, out, models_[m], options_.fitting, judging);
+      if (!(sight.model <= options_.must_foretell * sight.fair)) {
+        best = std::max(best, Objection::Unlike);
+        continue;
+      }
     }
     color_vertices_of_scan(scan_.mesh(), out.source, out.mesh);
     if (options_.match_color) match_colors(scan_.mesh(), fit.mesh, out.source, out.mesh);

@@ -22,6 +22,9 @@ struct RestoreOptions {
   int resolution = 0;             ///< of the thesis' cut
   seam::SeamSmoothing smoothing;  ///< distance 0 = two edges of the rim
   bool match_color = true;        ///< the patch's vertex colours go on from the scan's
+  /// Where no database vouches for a model: by how much it may miss the sound
+  /// surface beside the patch, of what a smooth surface does (foresight.h); 0 = not asked.
+  double must_foretell = 0;
 };
 
 /// What mending one region measured.

@@ -42,7 +42,6 @@ constexpr Plan kUsual{Correlation::kCoarse, {{{4, 160, 15, 4}, {3, 300, 15, 2}, 
 /// it, as models with joints may agree there only; the best kLookedAtAgain models.
 constexpr Plan kCloser{Correlation::kFine,
                        {{{1.5, 160, 15, 4}, {1.5, 300, 15, 2}, {1.5, 600, 20, 1}, {1.5, 1000, 30, 1}}}};
-constexpr double kDoubtful = 0.085;  // a score above it; measured: below it all are right, above it most are wrong
 constexpr int kLookedAtAgain = 32;
 constexpr int kFit = int(kUsual.scales.size()) - 1, kLevels = kFit;
 

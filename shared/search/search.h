@@ -36,6 +36,9 @@ struct Candidate {
   double score = 0;
 };
 
+/// A score above it is a doubtful one (measured: below it all are right, above it most are wrong).
+constexpr double kDoubtful = 0.085;
+
 class ModelCache;
 
 /// What a search leaves for the next one in the same scan, database and options

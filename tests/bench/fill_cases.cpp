@@ -8,6 +8,7 @@
 #include <fstream>
 #include <random>
 
+#include "parts/base/disjoint_sets.h"
 #include "parts/io/mesh_io.h"
 #include "parts/mesh/attributes.h"
 #include "parts/mesh/prepare.h"
@@ -79,6 +80,26 @@ Mesh dented(const Mesh& whole, const Vec3& at, const DamageCase& c, double radiu
   return scan;
 }
 
+/// Of the vertices above a height the one with the largest x: an ear's.
+long leftmost(const std::vector<Vec3>& v, double height) {
+  const auto key = [&](const Vec3& p) { return p.y() > height ? p.x() : -1e9; };
+  return std::max_element(v.begin(), v.end(), [&](auto& a, auto& b) { return key(a) < key(b); }) - v.begin();
+}
+
+/// Of the faces within a ball those that hang together with the one nearest its
+/// centre: the cheek, and not the inside of the mouth behind it.
+std::vector<char> sheet_around(const Mesh& mesh, const Vec3& at, double radius) {
+  std::vector<char> inside(mesh.faces.size());
+  DisjointSets sets(mesh.vertex_count());
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    inside[f] = (mesh.center(f) - at).norm() < radius;
+    if (inside[f]) sets.unite(mesh.faces[f][0], mesh.faces[f][1]), sets.unite(mesh.faces[f][0], mesh.faces[f][2]);
+  }
+  const int sheet = sets.find(mesh.faces[spatial::ClosestFace(mesh, inside)(at).face][0]);
+  for (int f = 0; f < mesh.face_count(); ++f) inside[f] = inside[f] && sets.find(mesh.faces[f][0]) == sheet;
+  return inside;
+}
+
 }  // namespace
 
 std::vector<std::string> files_of(const std::string& folder, const std::string& extension) {
@@ -91,8 +112,11 @@ std::vector<std::string> files_of(const std::string& folder, const std::string& 
 }
 
 const std::vector<DamageCase> kDamageCases = {
-    {"nose removed", "nose", Vec3(0, 0, 0), 0.45, DamageCase::Hole},
-    {"crown removed", "crown", Vec3(0, 0, 0), 1.4, DamageCase::Hole},
+    {"nose removed", "nose", Vec3(0, 0, 0), 0.45, DamageCase::Hole, true},
+    {"crown removed", "crown", Vec3(0, 0, 0), 1.4, DamageCase::Hole, true},
+    {"ear removed", "ear", Vec3(0, 0, 0), 0.65, DamageCase::Hole},
+    {"cheek removed", "nose", Vec3(0.85, -0.1, -0.7), 0.35, DamageCase::Hole},
+    {"eye corner removed", "nose", Vec3(0.75, 0.6, -0.5), 0.3, DamageCase::Hole},
     {"nose broken", "nose", Vec3(0, 0, 0), 0.48, DamageCase::Dent},
     {"nose broken, in a box", "nose", Vec3(0, 0, 0), 0.48, DamageCase::Dent, true},
     {"cheek dented", "nose", Vec3(0.6, -0.2, -0.45), 0.48, DamageCase::Dent},
@@ -101,10 +125,11 @@ const std::vector<DamageCase> kDamageCases = {
 };
 
 MemberClass heads(const std::string& data) {
-  MemberClass c{"heads", {}};
+  MemberClass c{"heads", {}, {}};
   for (const std::string& file : files_of(fs::path(data) / "heads", ".obj")) {
     Member m = read_member(file);
     m.nose_tip = landmark(file, "nose_tip"), m.crown = landmark(file, "crown");
+    m.ear = landmark(file, "ear_l");
     m.unit = (landmark(file, "eye_l") - landmark(file, "eye_r")).norm();
     c.members.push_back(std::move(m));
   }
@@ -112,8 +137,8 @@ MemberClass heads(const std::string& data) {
 }
 
 MemberClass head_shapes(const std::string& data) {
-  MemberClass c{"head_shapes", {}};
-  long nose = 0, crown = 0;
+  MemberClass c{"head_shapes", {}, {}};
+  long nose = 0, crown = 0, ear = 0;
   for (const std::string& file : files_of(fs::path(data) / "head_shapes", ".ply")) {
     Member m = read_member(file);
     const auto& v = m.mesh.vertices;
@@ -122,16 +147,56 @@ MemberClass head_shapes(const std::string& data) {
       nose =
           std::max_element(v.begin(), v.end(), [&](auto& a, auto& b) { return forward(a) < forward(b); }) - v.begin();
       crown = std::max_element(v.begin(), v.end(), [](auto& a, auto& b) { return a.y() < b.y(); }) - v.begin();
+      ear = leftmost(v, v[std::size_t(nose)].y());
     }
-    m.nose_tip = v.at(std::size_t(nose)), m.crown = v.at(std::size_t(crown));
+    m.nose_tip = v.at(std::size_t(nose)), m.crown = v.at(std::size_t(crown)), m.ear = v.at(std::size_t(ear));
     m.unit = 6.3;  // centimetres
     c.members.push_back(std::move(m));
   }
   return c;
 }
 
+MemberClass bent(MemberClass c, double amount) {
+  c.name += ", bent";
+  unsigned seed = 1;
+  for (Member& m : c.members) {
+    c.models.push_back(m.file);
+    std::mt19937 random(seed++);
+    const auto number = [&] { return 2 * double(random()) / 4294967296.0 - 1; };
+    constexpr int kWaves = 12;
+    const double each = amount * m.unit * std::sqrt(6.0 / kWaves);
+    std::vector<Vec3> moved = m.mesh.vertices;
+    const auto bend = [&](Vec3& p, const Vec3& at, const Vec3& wave, const Vec3& along, double phase) {
+      p += each * std::sin(wave.dot(at) + phase) * along;
+    };
+    for (int w = 0; w < kWaves; ++w) {
+      const Vec3 wave = Vec3(number(), number(), number()).normalized() * 2 * M_PI / (m.unit * (2.5 + 1.5 * number()));
+      const Vec3 along = Vec3(number(), number(), number()).normalized();
+      const double phase = M_PI * number();
+      for (std::size_t v = 0; v < moved.size(); ++v) bend(moved[v], m.mesh.vertices[v], wave, along, phase);
+      for (Vec3* p : {&m.nose_tip, &m.crown, &m.ear}) bend(*p, *p, wave, along, phase);
+    }
+    m.mesh.vertices = std::move(moved);
+  }
+  return c;
+}
+
+MemberClass head_scan(const std::string& data) {
+  MemberClass c{"head_scan", {}, files_of(fs::path(data) / "heads", ".obj")};
+  for (const std::string& file : files_of(fs::path(data) / "head_scan", ".obj")) {
+    Member m = read_member(file);
+    const auto& v = m.mesh.vertices;
+    m.nose_tip = *std::max_element(v.begin(), v.end(), [](auto& a, auto& b) { return a.z() < b.z(); });
+    m.crown = *std::max_element(v.begin(), v.end(), [](auto& a, auto& b) { return a.y() < b.y(); });
+    m.ear = v[std::size_t(leftmost(v, m.nose_tip.y()))];
+    m.unit = 1.5;
+    c.members.push_back(std::move(m));
+  }
+  return c;
+}
+
 MemberClass busts(const std::string& folder, int count) {
-  MemberClass c{"busts", {}};
+  MemberClass c{"busts", {}, {}};
   for (int i = 0; i < count; ++i) {
     const test::BustShape shape = test::random_bust(unsigned(100 + i));
     const std::string file = (fs::path(folder) / ("bust_" + std::to_string(i) + ".ply")).string();
@@ -139,6 +204,7 @@ MemberClass busts(const std::string& folder, int count) {
     Member m = read_member(file);
     const test::BustLandmarks at = test::bust_landmarks(shape);
     m.nose_tip = at.nose_tip, m.crown = at.crown, m.unit = 2 * shape.eye_distance;
+    m.ear = m.mesh.vertices[std::size_t(leftmost(m.mesh.vertices, at.nose_tip.y()))];
     c.members.push_back(std::move(m));
   }
   return c;
@@ -148,7 +214,8 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
   const Mesh& whole = member.mesh;
   const double radius = what.radius * member.unit;
   const std::vector<char> outer = seen_from_outside(whole);
-  Vec3 at = (std::string(what.at) == "nose" ? member.nose_tip : member.crown) + member.unit * what.offset;
+  const std::string near = what.at;
+  Vec3 at = (near == "nose" ? member.nose_tip : near == "ear" ? member.ear : member.crown) + member.unit * what.offset;
   if (what.offset != Vec3::Zero()) {
     std::vector<char> outside(whole.faces.size());
     for (int f = 0; f < whole.face_count(); ++f)
@@ -158,14 +225,18 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
   Damaged d;
   std::vector<char> gone(whole.faces.size(), 0), touched(whole.vertices.size(), 0);
   if (what.kind == DamageCase::Hole) {
+    gone = sheet_around(whole, at, radius);
     std::vector<char> stays(whole.faces.size());
     for (int f = 0; f < whole.face_count(); ++f) {
-      gone[f] = ((whole.corner(f, 0) + whole.corner(f, 1) + whole.corner(f, 2)) / 3 - at).norm() < radius;
       stays[f] = !gone[f];
       if (gone[f])
         for (int v : whole.faces[f]) touched[v] = 1;
     }
-    d.scan = mesh::take_faces(whole, stays);
+    Mesh marked = whole;
+    marked.face_selected.assign(whole.faces.size(), 0);
+    for (int f = 0; f < whole.face_count(); ++f)
+      for (int v : whole.faces[f]) marked.face_selected[f] |= !what.box && touched[v];
+    d.scan = mesh::take_faces(marked, stays);
   } else {
     d.scan = dented(whole, at, what, radius, member.unit, seed, touched);
     for (int f = 0; f < whole.face_count(); ++f)
@@ -175,9 +246,9 @@ Damaged damage(const Member& member, const DamageCase& what, unsigned seed) {
   for (int v = 0; v < whole.vertex_count(); ++v)
     if (touched[v]) d.truth.push_back(whole.vertices[v]), d.outer.push_back(outer[v]);
   if (what.kind == DamageCase::Hole || what.box) {
-    d.region.by = mend::RegionBy::Box;
+    d.region.by = what.box ? mend::RegionBy::Box : mend::RegionBy::Selection;
     for (const Vec3& p : d.truth) d.region.box.extend(p);
-    const double margin = what.box ? 0.5 * what.radius : 0.17;
+    const double margin = what.kind == DamageCase::Hole ? 0.17 : 0.5 * what.radius;
     d.region.box.min().array() -= margin * member.unit, d.region.box.max().array() += margin * member.unit;
   }
   return d;

@@ -12,16 +12,17 @@ namespace parts::bench {
 /// A member of a class, whole.
 struct Member {
   std::string file;
-  Mesh mesh;                ///< prepared, without textures
-  std::vector<char> outer;  ///< per vertex: seen from outside; mouth, nostrils and eyes' backs are not
-  Vec3 nose_tip, crown;
-  double unit = 1;  ///< world units: about the distance between the eyes
+  Mesh mesh;                  ///< prepared, without textures
+  std::vector<char> outer;    ///< per vertex: seen from outside; mouth, nostrils and eyes' backs are not
+  Vec3 nose_tip, crown, ear;  ///< the left ear
+  double unit = 1;            ///< world units: about the distance between the eyes
 };
 
 /// Objects of one kind.
 struct MemberClass {
   std::string name;
   std::vector<Member> members;
+  std::vector<std::string> models;  ///< files of another class that mend these; empty: the other members
 };
 
 /// The files of a folder with that ending (".obj"), sorted; none if it is not there.
@@ -33,15 +34,20 @@ MemberClass heads(const std::string& data);
 /// vertex beside the middle plane of the first, the crown its highest, and the
 /// same vertices of the others.
 MemberClass head_shapes(const std::string& data);
+/// Members bent by a smooth random field of that RMS, in units: no face is
+/// symmetric. Their models are the class as it was.
+MemberClass bent(MemberClass members, double amount);
+/// The real scan of a head; its models are the heads.
+MemberClass head_scan(const std::string& data);
 /// Busts of the project's own, written into a folder.
 MemberClass busts(const std::string& folder, int count);
 
 struct DamageCase {
-  const char *name, *at;  ///< at: "nose" or "crown"
+  const char *name, *at;  ///< at: "nose", "crown" or "ear"
   Vec3 offset;            ///< of the centre from there, units; then the nearest point on the surface
   double radius;          ///< units
   enum Kind { Hole, Dent, Gouge, Noise } kind;
-  bool box = false;  ///< a flaw given by a box of twice its size, not by its faces
+  bool box = false;  ///< given by a box (of a flaw, twice its size), not by its faces or those at the rim
 };
 extern const std::vector<DamageCase> kDamageCases;
 

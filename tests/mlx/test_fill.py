@@ -95,8 +95,23 @@ class Fill(lib.MeshCase):
 
     def test_no_database(self):
         scan = BUSTS.file("hole")
-        self.assertFailed(self.fill(scan, Database=""), "database")
         self.assertFailed(self.fill(scan, Database="nowhere/at_all"), "nowhere/at_all")
+
+    def test_the_scan_itself_is_the_database(self):
+        """An ear comes back from the other one; a nose does not, and the sentence says what to do."""
+        whole = BUSTS.mesh("whole")
+        x = whole.v[:, 0] * (whole.v[:, 1] > -0.2)
+        ear = whole.v[np.argmax(x)]
+        lost = np.linalg.norm(whole.v - ear, axis=1) < 0.15
+        scan = shapes.Mesh(whole.v, whole.f[~lost[whole.f].any(axis=1)])
+        shapes.write_ply(BUSTS.folder / "ear.ply", scan)
+        result = self.fill(BUSTS.folder / "ear.ply", Database="")
+        mesh = self.check(result, scan)
+        figures = result.figures()
+        self.assertIn("mirror image", figures["model"])
+        self.assertLess(float(figures["symmetry_residual"]), 0.03)
+        self.assertLess(mend.nearest(whole.v[lost], mesh.v).mean(), 0.02)
+        self.assertFailed(self.fill(BUSTS.file("hole"), Database=""), "Database")
 
     def test_matrix_counts(self):
         """A layer's matrix places the scan, here in other units and turned."""

@@ -117,7 +117,7 @@ inline mend::Mended fill_all(const Mesh& scan, const std::vector<Mesh>& models,
   mend::MendOptions options;
   options.fill = true;
   options.region = where;
-  return mend::mend_scan(scan, *database, options, progress);
+  return mend::mend_scan(scan, &*database, options, progress);
 }
 
 struct NoseHole {
