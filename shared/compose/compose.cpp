@@ -47,7 +47,8 @@ Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume
   Assembly t;
   progress.stage("Finding the minimal cut", 10, 60);
   cut::check_volume(a, volume), cut::check_volume(b, volume);
-  const cut::MeshCut cut = cut::cut_meshes(a, b, volume, options.threads, t.result.report, progress);
+  const cut::MeshCut cut =
+      cut::cut_meshes(a, b, volume, options.smoothing.blend, options.threads, t.result.report, progress);
   progress.stage("Clipping", 60, 75);
   const double crumb = 1.5 * cut.edge;
   seam::Clipped clipped[2] = {clip_border(cut.border[0], a.keep, crumb), clip_border(cut.border[1], b.keep, crumb)};
@@ -57,8 +58,8 @@ Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume
     clipped[1] = clip_border(cut.raw_border(1), b.keep, crumb);
   }
   if (options.transition_surface) t.result.transition = surface_between(clipped[0].mesh, clipped[1].mesh, volume);
-  assemble(a, std::move(clipped[0]), b, std::move(clipped[1]), {cut.edge, 3 * cut.edge + 1.5 * cut.gap}, options,
-           progress, t);
+  assemble(a, std::move(clipped[0]), b, std::move(clipped[1]), {cut.edge, 3 * cut.edge + 1.5 * cut.gap, cut.step},
+           options, progress, t);
   return t;
 }
 
@@ -106,7 +107,7 @@ Attempt at_resolution(cut::Model& a, cut::Model& b, const Box& volume, int resol
   seam::Clipped clipped_b = clip_by_voxels(b, false, d, transition, options.threads);
   if (options.transition_surface) t.result.transition = cut::transition_surface(d.voxels, d.labels, 0);
   const double voxel = t.result.report.voxel_size;
-  assemble(a, std::move(clipped_a), b, std::move(clipped_b), {voxel, 3 * voxel}, options, progress, t);
+  assemble(a, std::move(clipped_a), b, std::move(clipped_b), {voxel, 3 * voxel, 0}, options, progress, t);
   return attempt;
 }
 

@@ -24,16 +24,19 @@ std::vector<char> points_of(const LabelledModel& m, const std::vector<char>& fac
   std::vector<char> used(m.points.size(), 0);
   for (std::size_t p = 0; p < used.size(); ++p) {
     const SplitPoint& point = m.points[p];
-    used[p] = point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0;
+    used[p] = point.vertex >= 0 ||
+              (point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0);
+    // What must stay whole has edges in common with the others.
+    if (point.edge[0] >= 0 && m.still[point.edge[0]] && m.still[point.edge[1]]) used[p] = 0;
   }
   return used;
 }
 
-/// The label of the work mesh's part of a face that is nearest to a point. A
-/// long face may have very many parts.
-class LabelOfPart {
+/// The work mesh's part of a face that is nearest to a point. A long face may
+/// have very many parts.
+class PartOfFace {
  public:
-  LabelOfPart(const WorkMesh& w, const std::vector<Territory>& label, const std::vector<char>& faces) : label_(label) {
+  PartOfFace(const WorkMesh& w, const std::vector<char>& faces) {
     std::unordered_map<int, spatial::Surface> surfaces;
     for (int f = 0; f < w.mesh.face_count(); ++f) {
       if (!faces[w.source[f]]) continue;
@@ -43,10 +46,10 @@ class LabelOfPart {
     }
     for (auto& [source, part] : parts_) part.tree = std::make_unique<spatial::TriangleTree>(surfaces[source]);
   }
-  Territory operator()(int source, const Vec3& p) const {
+  int operator()(int source, const Vec3& p) const {
     const Parts& parts = parts_.at(source);
     int hint = 0;
-    return label_[parts.faces[parts.tree->closest(p, hint).triangle]];
+    return parts.faces[parts.tree->closest(p, hint).triangle];
   }
 
  private:
@@ -54,45 +57,120 @@ class LabelOfPart {
     std::vector<int> faces;
     std::unique_ptr<spatial::TriangleTree> tree;
   };
-  const std::vector<Territory>& label_;
   std::unordered_map<int, Parts> parts_;
+};
+
+/// The line in which the values vanish, as points and segments on the model's own faces.
+class BorderLine {
+ public:
+  BorderLine(const LabelledModel& m, const std::vector<double>& value) : m_(m), w_(m.work), value_(value) {
+    place_.resize(w_.mesh.vertices.size());
+    for (int v = 0; v < m.mesh.vertex_count(); ++v) place_[v] = SplitPoint::at_vertex(m.mesh.vertices[v], v);
+    for (std::size_t p = 0; p < m.points.size(); ++p)
+      if (const int v = w_.vertex_of[p]; v >= m.mesh.vertex_count()) place_[v] = m.points[p];
+  }
+
+  /// The line's part in a face of the work mesh.
+  void add(int face) {
+    const Triangle& t = w_.mesh.faces[face];
+    std::vector<int> ends;
+    for (int k = 0; k < 3; ++k) {
+      const int i = t[k], j = t[(k + 1) % 3];
+      if (value_[i] == 0) ends.push_back(at_vertex(i, face));
+      if (value_[i] * value_[j] < 0) ends.push_back(on_edge(i, j, face));
+    }
+    if (ends.size() == 2) segments.push_back({w_.source[face], {ends[0], ends[1]}});
+  }
+  /// A point of the work mesh, with its value.
+  int at_vertex(int v, int face) {
+    const auto [it, fresh] = of_vertex_.try_emplace(v, int(points.size()));
+    if (fresh) {
+      SplitPoint p = place_[v];
+      if (!p.anywhere()) p = in_source(w_.mesh.vertices[v], face);
+      points.push_back(p), values.push_back(value_[v]);
+    }
+    return it->second;
+  }
+
+  std::vector<SplitPoint> points;
+  std::vector<double> values;
+  std::vector<SplitSegment> segments;
+
+ private:
+  SplitPoint in_source(const Vec3& p, int face) const {
+    const int f = w_.source[face];
+    const Vec3 n = m_.mesh.area_vector(f), &a = m_.mesh.corner(f, 0), &b = m_.mesh.corner(f, 1),
+               &c = m_.mesh.corner(f, 2);
+    const double whole = std::max(n.squaredNorm(), 1e-300);
+    const double l1 = (p - a).cross(c - a).dot(n) / whole, l2 = (b - a).cross(p - a).dot(n) / whole;
+    return SplitPoint::in_face(p, f, {1 - l1 - l2, l1, l2});
+  }
+  int on_edge(int i, int j, int face) {
+    constexpr double kMargin = 0.01;  // no face gets an edge of no length
+    const int low = std::min(i, j), high = std::max(i, j);
+    const auto [it, fresh] = of_edge_.try_emplace(edge_key(i, j), int(points.size()));
+    if (!fresh) return it->second;
+    const double t = std::clamp(value_[low] / (value_[low] - value_[high]), kMargin, 1 - kMargin);
+    const Vec3 p = (1 - t) * w_.mesh.vertices[low] + t * w_.mesh.vertices[high];
+    // On an edge of the model where both ends are.
+    const SplitPoint &from = place_[low], &to = place_[high];
+    std::array<int, 2> edge = from.edge[0] >= 0 ? from.edge : to.edge;
+    if (from.vertex >= 0 && to.vertex >= 0) edge = {low, high};
+    if (edge[0] >= 0 && from.on(edge[0], edge[1]) && to.on(edge[0], edge[1])) {
+      const auto share = [&](const SplitPoint& x) { return x.vertex >= 0 ? double(x.vertex == edge[1]) : x.share; };
+      points.push_back(SplitPoint::on_edge(p, edge[0], edge[1], (1 - t) * share(from) + t * share(to)));
+    } else {
+      points.push_back(in_source(p, face));
+    }
+    values.push_back(0);
+    return it->second;
+  }
+
+  const LabelledModel& m_;
+  const WorkMesh& w_;
+  const std::vector<double>& value_;
+  std::vector<SplitPoint> place_;  ///< per vertex of the work mesh
+  std::unordered_map<int, int> of_vertex_;
+  std::unordered_map<std::uint64_t, int> of_edge_;
 };
 
 }  // namespace
 
-MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values) {
+MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool even) {
   const WorkMesh& w = m.work;
+  const std::vector<double>& value = values.value[m.side];
   const double sign = m.side ? -1 : 1;
   std::vector<char> passed(m.mesh.faces.size(), 0);  // by the border
   {
     std::vector<char> signs(m.mesh.faces.size(), 0);
     for (int f = 0; f < w.mesh.face_count(); ++f)
-      for (int v : w.mesh.faces[f])
-        signs[w.source[f]] |= values.value[m.side][v] > 0 ? 1 : values.value[m.side][v] < 0 ? 2 : 4;
+      for (int v : w.mesh.faces[f]) signs[w.source[f]] |= value[v] > 0 ? 1 : value[v] < 0 ? 2 : 4;
     for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = signs[f] >= 3;
   }
-  std::vector<char> used = points_of(m, passed);
-  std::fill_n(used.begin(), m.curve.points.size(), 0);
-  std::vector<SplitSegment> segments;
-  for (std::size_t s = 0; s < m.curve.segments.size(); ++s) {
-    if (!values.pinned[s]) continue;
-    const CrossingSegment& segment = m.curve.segments[s];
-    segments.push_back({m.side ? segment.face_b : segment.face_a, segment.ends});
-    for (int end : segment.ends) used[end] = 1;
-  }
+  BorderLine line(m, value);
+  for (int f = 0; f < w.mesh.face_count(); ++f)
+    if (passed[w.source[f]]) line.add(f);
+  if (even)
+    for (int f = 0; f < w.mesh.face_count(); ++f)
+      if (passed[w.source[f]])
+        for (int v : w.mesh.faces[f])
+          if (v >= m.mesh.vertex_count()) line.at_vertex(v, f);
   MeshBorder border;
-  border.split = split_faces(m.mesh, m.points, used, segments);
+  border.split = split_faces(m.mesh, line.points, std::vector<char>(line.points.size(), 1), line.segments);
   const SplitMesh& split = border.split;
   border.value.assign(split.mesh.vertices.size(), 0);
-  for (int v = 0; v < m.mesh.vertex_count(); ++v) border.value[v] = sign * values.value[m.side][v];
-  for (std::size_t p = 0; p < used.size(); ++p)
-    if (used[p]) border.value[split.vertex_of[p]] = sign * values.value[m.side][w.vertex_of[p]];
-  const LabelOfPart label(w, m.label, passed);
+  for (int v = 0; v < m.mesh.vertex_count(); ++v) border.value[v] = sign * value[v];
+  for (std::size_t p = 0; p < line.points.size(); ++p)
+    if (line.points[p].vertex < 0) border.value[split.vertex_of[p]] = sign * line.values[p];
+  const PartOfFace part(w, passed);
   border.keep_level.assign(split.mesh.faces.size(), 0);
   for (int f = 0; f < split.mesh.face_count(); ++f) {
     const Triangle& t = split.mesh.faces[f];
-    if (border.value[t[0]] == 0 && border.value[t[1]] == 0 && border.value[t[2]] == 0)
-      border.keep_level[f] = label(split.source[f], split.mesh.center(f)) == (m.side ? kOfB : kOfA);
+    if (border.value[t[0]] != 0 || border.value[t[1]] != 0 || border.value[t[2]] != 0) continue;
+    const int g = part(split.source[f], split.mesh.center(f));
+    double sum = 0;
+    for (int v : w.mesh.faces[g]) sum += value[v];
+    border.keep_level[f] = sum != 0 ? sign * sum > 0 : m.label[g] == (m.side ? kOfB : kOfA);
   }
   return border;
 }
@@ -104,10 +182,6 @@ MeshBorder raw_border(const LabelledModel& m) {
   for (int f = 0; f < w.mesh.face_count(); ++f) (m.label[f] == own ? kept : dropped)[w.source[f]] = 1;
   for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
   std::vector<char> used = points_of(m, passed);
-  for (std::size_t p = 0; p < used.size(); ++p) {  // what must stay whole has edges in common with what is passed
-    const SplitPoint& point = m.points[p];
-    if (point.face < 0 && m.still[point.edge[0]] && m.still[point.edge[1]]) used[p] = 0;
-  }
   std::vector<SplitSegment> segments;
   for (const CrossingSegment& s : m.curve.segments)
     if (const int f = m.side ? s.face_b : s.face_a; passed[f] && used[s.ends[0]] && used[s.ends[1]])
@@ -115,10 +189,11 @@ MeshBorder raw_border(const LabelledModel& m) {
   MeshBorder border;
   border.split = split_faces(m.mesh, m.points, used, segments);
   border.value.assign(border.split.mesh.vertices.size(), 0);
-  const LabelOfPart label(w, m.label, passed);
+  const PartOfFace part(w, passed);
   for (int f = 0; f < border.split.mesh.face_count(); ++f) {
     const int source = border.split.source[f];
-    border.keep_level.push_back(passed[source] ? label(source, border.split.mesh.center(f)) == own : kept[source]);
+    border.keep_level.push_back(passed[source] ? m.label[part(source, border.split.mesh.center(f))] == own
+                                               : kept[source]);
   }
   return border;
 }

@@ -50,6 +50,8 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
     const cut::Model& model = from_b ? b : a;
     const int source = from_b ? cb.source_face[f - ca.mesh.face_count()] : ca.source_face[f];
     j.tag.push_back(from_b);
+    const Clipped& clipped = from_b ? cb : ca;
+    j.same.push_back(!clipped.same.empty() && clipped.same[from_b ? f - ca.mesh.face_count() : f]);
     for (int v : j.mesh.faces[f]) {
       j.like[v] = f;
       j.fixed[v] |= model.keep[source];

@@ -302,8 +302,10 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
       Vec3 mean = Vec3::Zero();
       double weights = 0;
       for (int u : band.around[v]) {
-        const double n = 1 / std::max((mesh.vertices[u] - mesh.vertices[v]).norm(), 1e-300);
-        mean += n * mesh.vertices[u], weights += n;
+        // Those beyond the distance as if an edge's parts were no longer than that.
+        const Vec3 to = mesh.vertices[u] - mesh.vertices[v];
+        const double n = 1 / std::max(to.norm(), 1e-300), part = distance > 0 ? std::min(1.0, distance * n) : 1;
+        mean += n * (mesh.vertices[v] + part * to), weights += n;
       }
       mean /= weights;
       const double w = weight * (distance > 0 ? 1 - band.away[v] / distance : 1);
