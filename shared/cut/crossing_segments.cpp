@@ -31,14 +31,6 @@ bool pierces(const Vec3& p, const Vec3& q, const Mesh& mesh, int face, double& s
   return true;
 }
 
-Vec3 barycentric(const Mesh& mesh, int face, const Vec3& p) {
-  const Vec3 n = mesh.area_vector(face), &a = mesh.corner(face, 0), &b = mesh.corner(face, 1),
-             &c = mesh.corner(face, 2);
-  const double whole = std::max(n.squaredNorm(), 1e-300);
-  const Vec3 l(0, (p - a).cross(c - a).dot(n) / whole, (b - a).cross(p - a).dot(n) / whole);
-  return {1 - l[1] - l[2], l[1], l[2]};
-}
-
 /// Where between its ends the line p, q comes nearest to the line r, s, and the
 /// other way round; false where they are parallel.
 bool nearest_shares(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s, double& on_pq, double& on_rs) {
@@ -204,6 +196,14 @@ void Finder::add_sides(int face_a, int face_b, const std::vector<int>& found) {
 }
 
 }  // namespace
+
+Vec3 barycentric(const Mesh& mesh, int face, const Vec3& p) {
+  const Vec3 n = mesh.area_vector(face), &a = mesh.corner(face, 0), &b = mesh.corner(face, 1),
+             &c = mesh.corner(face, 2);
+  const double whole = std::max(n.squaredNorm(), 1e-300);
+  const Vec3 l(0, (p - a).cross(c - a).dot(n) / whole, (b - a).cross(p - a).dot(n) / whole);
+  return {1 - l[1] - l[2], l[1], l[2]};
+}
 
 SplitPoint place_on(const Mesh& mesh, const spatial::FaceTree& tree, const Vec3& p, double step) {
   const spatial::FaceTree::Hit hit = tree.nearest(p, step);

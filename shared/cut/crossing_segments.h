@@ -42,6 +42,9 @@ CrossingCurve find_crossings(const Mesh& a, const spatial::FaceTree& tree_a, con
 /// on an edge, or else in a face; nowhere if there is none.
 SplitPoint place_on(const Mesh& mesh, const spatial::FaceTree& tree, const Vec3& p, double step);
 
+/// The barycentric coordinates of a face's point that is nearest to p in its plane.
+Vec3 barycentric(const Mesh& mesh, int face, const Vec3& p);
+
 /// The curve's points as split points of A (0) or of B (1).
 std::vector<SplitPoint> split_points(const CrossingCurve& curve, int side);
 

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "parts/mesh/edges.h"
 #include "parts/mesh/loops.h"
@@ -14,22 +13,6 @@ namespace {
 
 std::uint64_t edge_key(int a, int b) {
   return std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));
-}
-
-/// The points on and in the model's flagged faces.
-std::vector<char> points_of(const LabelledModel& m, const std::vector<char>& faces) {
-  std::unordered_set<std::uint64_t> edges;
-  for (int f = 0; f < m.mesh.face_count(); ++f)
-    for (int k = 0; faces[f] && k < 3; ++k) edges.insert(edge_key(m.mesh.faces[f][k], m.mesh.faces[f][(k + 1) % 3]));
-  std::vector<char> used(m.points.size(), 0);
-  for (std::size_t p = 0; p < used.size(); ++p) {
-    const SplitPoint& point = m.points[p];
-    used[p] = point.vertex >= 0 ||
-              (point.face >= 0 ? faces[point.face] != 0 : edges.count(edge_key(point.edge[0], point.edge[1])) > 0);
-    // What must stay whole has edges in common with the others.
-    if (point.edge[0] >= 0 && m.still[point.edge[0]] && m.still[point.edge[1]]) used[p] = 0;
-  }
-  return used;
 }
 
 /// The work mesh's part of a face that is nearest to a point. A long face may
@@ -81,6 +64,13 @@ class BorderLine {
     }
     if (ends.size() == 2) segments.push_back({w_.source[face], {ends[0], ends[1]}});
   }
+  /// An edge of the work mesh as a part of the line.
+  void add_edge(const WorkMesh::Edge& e) {
+    for (int k = e.first_face; k < e.end_face; ++k) {
+      const int f = w_.edge_faces[k];
+      segments.push_back({w_.source[f], {at_vertex(e.low, f), at_vertex(e.high, f)}});
+    }
+  }
   /// A point of the work mesh, with its value.
   int at_vertex(int v, int face) {
     const auto [it, fresh] = of_vertex_.try_emplace(v, int(points.size()));
@@ -99,11 +89,7 @@ class BorderLine {
  private:
   SplitPoint in_source(const Vec3& p, int face) const {
     const int f = w_.source[face];
-    const Vec3 n = m_.mesh.area_vector(f), &a = m_.mesh.corner(f, 0), &b = m_.mesh.corner(f, 1),
-               &c = m_.mesh.corner(f, 2);
-    const double whole = std::max(n.squaredNorm(), 1e-300);
-    const double l1 = (p - a).cross(c - a).dot(n) / whole, l2 = (b - a).cross(p - a).dot(n) / whole;
-    return SplitPoint::in_face(p, f, {1 - l1 - l2, l1, l2});
+    return SplitPoint::in_face(p, f, barycentric(m_.mesh, f, p));
   }
   int on_edge(int i, int j, int face) {
     constexpr double kMargin = 0.01;  // no face gets an edge of no length
@@ -168,9 +154,10 @@ MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool 
     const Triangle& t = split.mesh.faces[f];
     if (border.value[t[0]] != 0 || border.value[t[1]] != 0 || border.value[t[2]] != 0) continue;
     const int g = part(split.source[f], split.mesh.center(f));
-    double sum = 0;
-    for (int v : w.mesh.faces[g]) sum += value[v];
-    border.keep_level[f] = sum != 0 ? sign * sum > 0 : m.label[g] == (m.side ? kOfB : kOfA);
+    const Vec3 share = barycentric(w.mesh, g, split.mesh.center(f));
+    const Triangle& n = w.mesh.faces[g];
+    const double at = sign * (share[0] * value[n[0]] + share[1] * value[n[1]] + share[2] * value[n[2]]);
+    border.keep_level[f] = at != 0 ? at > 0 : m.label[g] == (m.side ? kOfB : kOfA);
   }
   return border;
 }
@@ -181,13 +168,12 @@ MeshBorder raw_border(const LabelledModel& m) {
   std::vector<char> kept(m.mesh.faces.size(), 0), dropped = kept, passed = kept;
   for (int f = 0; f < w.mesh.face_count(); ++f) (m.label[f] == own ? kept : dropped)[w.source[f]] = 1;
   for (std::size_t f = 0; f < passed.size(); ++f) passed[f] = kept[f] && dropped[f];
-  std::vector<char> used = points_of(m, passed);
-  std::vector<SplitSegment> segments;
-  for (const CrossingSegment& s : m.curve.segments)
-    if (const int f = m.side ? s.face_b : s.face_a; passed[f] && used[s.ends[0]] && used[s.ends[1]])
-      segments.push_back({f, s.ends});
+  const std::vector<double> value(w.mesh.vertices.size(), 0);
+  BorderLine line(m, value);
+  for (const WorkMesh::Edge& e : w.edges)
+    if (w.cut(e, m.label)) line.add_edge(e);
   MeshBorder border;
-  border.split = split_faces(m.mesh, m.points, used, segments);
+  border.split = split_faces(m.mesh, line.points, std::vector<char>(line.points.size(), 1), line.segments);
   border.value.assign(border.split.mesh.vertices.size(), 0);
   const PartOfFace part(w, passed);
   for (int f = 0; f < border.split.mesh.face_count(); ++f) {

@@ -33,8 +33,7 @@ class MeshCutter {
         tree_{spatial::FaceTree(mesh(0)), spatial::FaceTree(mesh(1))} {
     problem_.scale = std::min(rms_size(mesh(0)), rms_size(mesh(1)));
     if (!(scale() > 0)) throw UserError("A model has no area; choose layers that hold surfaces.");
-    curve_ = find_crossings(mesh(0), tree_[0], mesh(1), tree_[1], coordinate_step(), threads);
-    points_found_ = curve_.points.size(), segments_found_ = curve_.segments.size();
+    found_ = find_crossings(mesh(0), tree_[0], mesh(1), tree_[1], coordinate_step(), threads);
     for (int x : {0, 1}) {
       const std::vector<char>& keep = model_[x]->keep;
       marks_[x].assign(mesh(x).faces.size(), 0);
@@ -169,7 +168,7 @@ class MeshCutter {
 
   void report(CutReport& r) const {
     r.scale = scale(), r.reach = labels_.reach;
-    r.crossing_segments = long(segments_found_), r.broken_ties = labels_.broken;
+    r.crossing_segments = long(found_.segments.size()), r.broken_ties = labels_.broken;
     r.cut_cost = labels_.objective;
   }
 
@@ -198,13 +197,14 @@ class MeshCutter {
   /// @param near  of A's (0) or B's surface: whether points are wanted within a distance of a place
   void prepare(const std::vector<Territory> (&forced)[2], const std::vector<char> (&split)[2], double edge,
                const std::function<bool(int, const Vec3&, double)>& near) {
-    curve_.points.resize(points_found_), curve_.segments.resize(segments_found_);
+    curve_ = found_;
     std::vector<SplitPoint> even[2];
     for (int x : {0, 1})
       add_even_points(
           mesh(x), split[x], still_[x], edge * scale(),
           [&](const Vec3& p, double distance) { return near(x, p, distance); }, even[x]);
     share_even_points(even);
+    part_segments();
     const auto make = [&](int x) {
       points_[x] = split_points(curve_, x);
       points_[x].insert(points_[x].end(), even[x].begin(), even[x].end());
@@ -234,6 +234,46 @@ class MeshCutter {
       return place_on(mesh(0), tree_[0], p.position, curve_.step).anywhere();
     };
     even[1].erase(std::remove_if(even[1].begin(), even[1].end(), on_a), even[1].end());
+  }
+
+  /// Parts segments along the models' edges at the even points on these.
+  void part_segments() {
+    std::unordered_map<std::uint64_t, std::vector<std::pair<double, int>>> on_edge[2];
+    for (std::size_t p = found_.points.size(); p < curve_.points.size(); ++p)
+      for (int x : {0, 1})
+        if (const SplitPoint& on = curve_.points[p].on[x]; on.edge[0] >= 0)
+          on_edge[x][edge_key(on.edge[0], on.edge[1])].emplace_back(on.share, int(p));
+    for (int x : {0, 1}) {
+      for (auto& [edge, points] : on_edge[x]) std::sort(points.begin(), points.end());
+      std::vector<CrossingSegment> parts;
+      for (const CrossingSegment& s : curve_.segments) {
+        const auto [low, high] = common_edge(x, s.ends);
+        const auto points = low >= 0 ? on_edge[x].find(edge_key(low, high)) : on_edge[x].end();
+        std::array<int, 2> ends = s.ends;
+        if (points != on_edge[x].end()) {
+          const auto share = [&, high = high](int p) {
+            const SplitPoint& on = curve_.points[p].on[x];
+            return on.vertex >= 0 ? double(on.vertex == high) : on.share;
+          };
+          if (share(ends[0]) > share(ends[1])) std::swap(ends[0], ends[1]);
+          for (const auto& [at, p] : points->second)
+            if (at > share(ends[0]) && at < share(ends[1])) {
+              parts.push_back({s.face_a, s.face_b, {ends[0], p}});
+              ends[0] = p;
+            }
+        }
+        parts.push_back({s.face_a, s.face_b, ends});
+      }
+      curve_.segments.swap(parts);
+    }
+  }
+
+  /// The edge of a model that two points lie on, {-1, -1} if on none.
+  std::array<int, 2> common_edge(int x, const std::array<int, 2>& ends) const {
+    const SplitPoint &p = curve_.points[ends[0]].on[x], &q = curve_.points[ends[1]].on[x];
+    std::array<int, 2> edge = p.edge[0] >= 0 ? p.edge : q.edge;
+    if (p.vertex >= 0 && q.vertex >= 0) edge = {std::min(p.vertex, q.vertex), std::max(p.vertex, q.vertex)};
+    return edge[0] >= 0 && p.on(edge[0], edge[1]) && q.on(edge[0], edge[1]) ? edge : std::array<int, 2>{-1, -1};
   }
 
   /// Where the models lie on each other B gets the edges of A's work mesh.
@@ -442,8 +482,7 @@ class MeshCutter {
   const Box volume_;
   const int threads_;
   spatial::FaceTree tree_[2];
-  CrossingCurve curve_;  ///< what was found, then what is imprinted
-  std::size_t points_found_ = 0, segments_found_ = 0;
+  CrossingCurve found_, curve_;      ///< as found, and with what is shared and imprinted
   std::vector<Territory> marks_[2];  ///< per face
   std::vector<char> still_[2];       ///< per vertex: of a face that stays whole
   std::vector<SplitPoint> points_[2];

@@ -123,10 +123,9 @@ void Smoother::fix_values(int x) {
     for (int f = 0; f < w.mesh.face_count(); ++f)
       if ((w.forced[f] || w.whole[f]) && (label[f] == own) == kept)
         for (int v : w.mesh.faces[f]) value[v] = label[f], fixed_[x][v] = 1;
-  // But along a pinned edge of its own it may end.
-  const int own_vertices = (x ? b_ : a_).prepared.mesh.vertex_count();
+  // But where the border is pinned it may end along what is kept.
   for (std::size_t v = 0; v < value.size(); ++v)
-    if (zero_[x][v] && (!fixed_[x][v] || int(v) < own_vertices)) value[v] = 0, fixed_[x][v] = 1;
+    if (zero_[x][v]) value[v] = 0, fixed_[x][v] = 1;
 }
 
 /// Vertices of B that lie where one of A does, and where the two are one surface, have its value.

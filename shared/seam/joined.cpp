@@ -113,7 +113,7 @@ long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, con
 long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
   const bool thesis = cut == cut::Cut::Thesis;
   tidy_seam(j.mesh, j.seam, j.fixed, j.tag,
-            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel});
+            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel, voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel, voxel});
   for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
   part_places(j.mesh, j.seam, j.fixed);

@@ -114,7 +114,7 @@ class Welder {
       const int u = merged(v);
       if (u == v) continue;
       if (j_.fixed[v]) j_.mesh.vertices[u] = j_.mesh.vertices[v], j_.fixed[u] = j_.fixed[v];
-      j_.seam[u] |= j_.seam[v];
+      j_.seam[u] |= j_.seam[v] | kWelded;
     }
     for (Triangle& f : j_.mesh.faces)
       for (int& v : f) v = merged(v);

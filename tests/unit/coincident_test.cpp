@@ -92,7 +92,7 @@ void expect_union(const Touching& t, const std::string& what, unsigned seed) {
            area_of(r.composed) / (s * s), t.area, int(r.report.cut));
 }
 
-constexpr unsigned kSeeds = 8;
+constexpr unsigned kSeeds = 24;
 
 std::vector<char> below(const Mesh& m, double z) {
   return faces_where(m, [&](const Vec3& c) { return c.z() < z; });
