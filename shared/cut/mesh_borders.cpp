@@ -66,10 +66,14 @@ class BorderLine {
   }
   /// An edge of the work mesh as a part of the line.
   void add_edge(const WorkMesh::Edge& e) {
-    for (int k = e.first_face; k < e.end_face; ++k) {
-      const int f = w_.edge_faces[k];
-      segments.push_back({w_.source[f], {at_vertex(e.low, f), at_vertex(e.high, f)}});
-    }
+    for (int k = e.first_face; k < e.end_face; ++k)
+      if (const int f = w_.edge_faces[k]; may_split(e.low) && may_split(e.high))
+        segments.push_back({w_.source[f], {at_vertex(e.low, f), at_vertex(e.high, f)}});
+  }
+  /// What must stay whole has edges in common with the others.
+  bool may_split(int v) const {
+    const std::array<int, 2>& edge = place_[v].edge;
+    return edge[0] < 0 || !m_.still[edge[0]] || !m_.still[edge[1]];
   }
   /// A point of the work mesh, with its value.
   int at_vertex(int v, int face) {
@@ -140,7 +144,7 @@ MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool 
     for (int f = 0; f < w.mesh.face_count(); ++f)
       if (passed[w.source[f]])
         for (int v : w.mesh.faces[f])
-          if (v >= m.mesh.vertex_count()) line.at_vertex(v, f);
+          if (v >= m.mesh.vertex_count() && line.may_split(v)) line.at_vertex(v, f);
   MeshBorder border;
   border.split = split_faces(m.mesh, line.points, std::vector<char>(line.points.size(), 1), line.segments);
   const SplitMesh& split = border.split;
@@ -150,10 +154,17 @@ MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool 
     if (line.points[p].vertex < 0) border.value[split.vertex_of[p]] = sign * line.values[p];
   const PartOfFace part(w, passed);
   border.keep_level.assign(split.mesh.faces.size(), 0);
+  std::vector<Territory> own_label(m.mesh.faces.size(), 0);
+  for (int f = 0; f < w.mesh.face_count(); ++f) own_label[w.source[f]] = m.label[f];
   for (int f = 0; f < split.mesh.face_count(); ++f) {
     const Triangle& t = split.mesh.faces[f];
     if (border.value[t[0]] != 0 || border.value[t[1]] != 0 || border.value[t[2]] != 0) continue;
-    const int g = part(split.source[f], split.mesh.center(f));
+    const int source = split.source[f];
+    if (!passed[source]) {  // all its sides are pinned
+      border.keep_level[f] = own_label[source] == (m.side ? kOfB : kOfA);
+      continue;
+    }
+    const int g = part(source, split.mesh.center(f));
     const Vec3 share = barycentric(w.mesh, g, split.mesh.center(f));
     const Triangle& n = w.mesh.faces[g];
     const double at = sign * (share[0] * value[n[0]] + share[1] * value[n[1]] + share[2] * value[n[2]]);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
+#include "parts/seam/cap.h"
 #include "parts/seam/contours.h"
 
 namespace parts::seam {
@@ -64,26 +66,31 @@ class Welder {
     return twin_[e[0]] >= 0 && twin_[e[1]] >= 0 && half_edges_b_.count({twin_[e[1]], twin_[e[0]]}) > 0;
   }
 
-  void part(int v) {
-    if (v < 0 || twin_[v] < 0) return;
+  bool part(int v) {
+    if (twin_[v] < 0) return false;
     twin_[twin_[v]] = -1, twin_[v] = -1;
+    return true;
   }
 
-  /// Only contours that the other has as a whole are welded. @return whether any was not
+  /// Of a contour that the other model has but for a few short stretches the rest is welded; others are not.
+  /// @return whether anything was parted
   bool drop_partial_loops() {
     std::set<std::array<int, 2>> half_edges_a;
     for_each_made(j_.loops_a, [&](const auto& e) { half_edges_a.insert(e); });
     bool any = false;
-    const auto drop = [&](const std::vector<mesh::Loop>& loops, const auto& whole_edge) {
+    const auto drop = [&](const std::vector<mesh::Loop>& loops, const auto& welds) {
       for (const mesh::Loop& l : loops) {
-        bool whole = true, twins = false;
-        for_each_half_edge(l, [&](const auto& e) {
-          twins |= twin_[e[0]] >= 0 || twin_[e[1]] >= 0;
-          whole = whole && (!made(e) || whole_edge(e));
-        });
-        if (whole || !twins) continue;
-        for (int v : l.vertices) part(v);
-        any = true;
+        std::vector<char> welded, own;
+        std::vector<int> lonely;  // vertices at no edge that is welded
+        for_each_half_edge(l, [&](const auto& e) { own.push_back(!made(e)), welded.push_back(made(e) && welds(e)); });
+        const int n = int(welded.size());
+        for (int i = 0; i < l.size(); ++i)
+          if (!(i < n && welded[i]) && !((l.closed || i > 0) && welded[(i + n - 1) % n])) lonely.push_back(i);
+        if (!mostly(welded, own, l.closed)) {
+          lonely.resize(l.size());
+          std::iota(lonely.begin(), lonely.end(), 0);
+        }
+        for (int i : lonely) any |= part(l.vertices[i]);
       }
     };
     drop(j_.loops_a, [&](const auto& e) { return welds(e); });
@@ -91,6 +98,23 @@ class Welder {
       return twin_[e[0]] >= 0 && twin_[e[1]] >= 0 && half_edges_a.count({twin_[e[1]], twin_[e[0]]}) > 0;
     });
     return any;
+  }
+
+  /// Whether all that is not welded is in short stretches between what is.
+  static bool mostly(const std::vector<char>& welded, const std::vector<char>& own, bool closed) {
+    constexpr int kShort = 8;  // half-edges
+    const int n = int(welded.size());
+    const bool all_made = std::find(own.begin(), own.end(), 1) == own.end();
+    bool whole = true;
+    for (int i = 0; i < n; ++i) whole = whole && (own[i] || welded[i]);
+    if (whole || !closed || !all_made) return whole;
+    const int first = int(std::find(welded.begin(), welded.end(), 1) - welded.begin());
+    int longest = 0, run = 0;
+    for (int i = 0; i < n; ++i) {
+      run = welded[(first + i) % n] ? 0 : run + 1;
+      longest = std::max(longest, run);
+    }
+    return longest <= kShort && 2 * std::count(welded.begin(), welded.end(), 1) > n;
   }
 
   /// No edge may get more than two faces.
@@ -103,13 +127,16 @@ class Welder {
       }
     bool any = false;
     for (const auto& [e, count] : faces)
-      if (count > 1 && twin_[e[0]] >= 0) part(e[0]), any = true;
+      if (count > 1) any |= part(e[0]);
     return any;
   }
 
   int merged(int v) const { return twin_[v] >= 0 && of_b_[v] ? twin_[v] : v; }
 
   void merge(SeamReport& report) {
+    for_each_made(j_.loops_a, [&](const auto& e) {
+      if (welds(e)) welded_.insert(e), welded_.insert({e[1], e[0]});
+    });
     for (int v = 0; v < int(twin_.size()); ++v) {
       const int u = merged(v);
       if (u == v) continue;
@@ -124,26 +151,43 @@ class Welder {
       for (int v : j_.mesh.faces[f]) still[v] = still[v] && j_.same[f];
     for (std::size_t v = 0; v < still.size(); ++v)
       if (still[v]) j_.fixed[v] = 1;
-    take_out(j_.loops_a, &report), take_out(j_.loops_b, nullptr);
+    HalfEdges left;
+    take_out(j_.loops_a, left, &report), take_out(j_.loops_b, left, nullptr);
+    close(left);
   }
 
-  /// Takes the welded half-edges out of contours.
-  void take_out(std::vector<mesh::Loop>& loops, SeamReport* report) {
-    std::vector<mesh::Loop> left;
+  /// Takes contours that are welded out; `left` gets what of them is not.
+  void take_out(std::vector<mesh::Loop>& loops, HalfEdges& left, SeamReport* report) {
+    const auto welded = [&](const std::array<int, 2>& e) { return welded_.count({merged(e[0]), merged(e[1])}) > 0; };
+    std::vector<mesh::Loop> others;
     for (mesh::Loop& l : loops) {
-      bool any_made = false, all = true;
+      HalfEdges open;
+      bool any = false;
       for_each_half_edge(l, [&](const auto& e) {
         if (!made(e)) return;
-        any_made = true, all = all && twin_[e[0]] >= 0 && twin_[e[1]] >= 0;
+        if (welded(e))
+          any = true;
+        else
+          open.push_back({merged(e[0]), merged(e[1])});
       });
-      if (!any_made || !all) {
-        left.push_back(std::move(l));
+      if (!any) {
+        others.push_back(std::move(l));
         continue;
       }
-      if (!report) continue;
-      ++report->loops_joined, report->seam_length += mesh::loop_length(j_.mesh, l);
+      left.insert(left.end(), open.begin(), open.end());
+      if (report) ++report->loops_joined, report->seam_length += mesh::loop_length(j_.mesh, l);
     }
-    loops.swap(left);
+    loops.swap(others);
+  }
+
+  /// Closes the slits between what is welded.
+  void close(const HalfEdges& left) {
+    if (left.empty()) return;
+    cap(j_.mesh, mesh::trace_loops(left), j_.like);
+    j_.tag.resize(j_.mesh.faces.size(), 2), j_.same.resize(j_.mesh.faces.size(), 0);
+    const std::size_t vertices = j_.mesh.vertices.size();
+    j_.seam.resize(vertices, kBorderA | kBorderB), j_.fixed.resize(vertices, 0), j_.closed.resize(vertices, 1);
+    j_.like.resize(vertices, j_.mesh.face_count() - 1);
   }
 
   Joined& j_;
@@ -151,6 +195,7 @@ class Welder {
   std::vector<int> twin_;   ///< per vertex: the other model's at its place, -1
   std::vector<char> of_b_;  ///< per vertex
   std::set<std::array<int, 2>> half_edges_b_;
+  std::set<std::array<int, 2>> welded_;  ///< both ways, A's vertices
 };
 
 }  // namespace
