@@ -152,12 +152,21 @@ class MeshCutter {
 
   /// Of the faces at a border those that lie on the other model too.
   void find_same(int x, MeshBorder& border) const {
+    constexpr double kNear = 0.005;  // of S
     const Mesh& split = border.split.mesh;
     border.same.assign(split.faces.size(), 0);
     for (int f = 0; f < split.face_count(); ++f) {
       const Triangle& t = split.faces[f];
       if (border.value[t[0]] != 0 && border.value[t[1]] != 0 && border.value[t[2]] != 0) continue;
-      const spatial::FaceTree::Hit hit = tree_[1 - x].nearest(split.center(f), 2 * curve_.step);
+      // A large face may lie on it only where the border is.
+      Vec3 at = Vec3::Zero();
+      int count = 0;
+      for (int v : t)
+        if (border.value[v] == 0) at += split.vertices[v], ++count;
+      at /= count;
+      const Vec3 inwards = split.center(f) - at;
+      at += std::min(1.0, kNear * scale() / std::max(inwards.norm(), 1e-300)) * inwards;
+      const spatial::FaceTree::Hit hit = tree_[1 - x].nearest(at, 2 * curve_.step);
       border.same[f] = hit.face >= 0 && split.normal(f).dot(mesh(1 - x).normal(hit.face)) > 0.9;
     }
   }

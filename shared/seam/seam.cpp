@@ -72,6 +72,7 @@ class SeamZone {
   std::vector<char>& seam_;
   const std::vector<char>& fixed_;
   std::vector<char> dead_;
+  double edge_ = 1e100;  ///< the seam's mean edge
   std::unordered_map<int, std::vector<int>> star_;
 };
 
@@ -87,8 +88,10 @@ bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (p[k] - p[(k + 1) % 3]).squaredNorm());
     if (after.norm() < 0.02 * longest && after.norm() < before.norm()) return false;
-    // A sliver's own normal means nothing.
-    if (before.norm() > 0.1 * longest && after.dot(before) < 0.3 * after.norm() * before.norm()) return false;
+    // A sliver's own normal means nothing, unless it is as long as to count for something.
+    if (before.norm() > 0.1 * std::min(longest, 4 * edge_ * edge_) &&
+        after.dot(before) < 0.3 * after.norm() * before.norm())
+      return false;
   }
   return true;
 }
@@ -131,6 +134,7 @@ bool SeamZone::try_collapse(int gone, int stays, const Vec3& to, double most_swe
 }
 
 void SeamZone::collapse_short(const SeamTidying& shortest) {
+  if (shortest.edge > 0) edge_ = shortest.edge;
   using Entry = std::pair<double, std::array<int, 2>>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto offer = [&](int u, int v) {
@@ -156,7 +160,7 @@ void SeamZone::collapse_short(const SeamTidying& shortest) {
     if (!at_one_place && (fixed_[gone] || !seam_[gone])) continue;
     const bool both = seam_[stays] && !fixed_[stays];
     const Vec3 middle = 0.5 * (mesh_.vertices[gone] + mesh_.vertices[stays]);
-    if (!try_collapse(gone, stays, both ? middle : mesh_.vertices[stays], std::pow(shortest.edge, 3))) continue;
+    if (!try_collapse(gone, stays, both ? middle : mesh_.vertices[stays], std::pow(edge_, 3))) continue;
     for (int u : neighbours(stays)) offer(stays, u);
   }
 }

@@ -85,6 +85,19 @@ void expect_union(const Touching& t, const std::string& what, unsigned seed) {
   EXPECT_NEAR(volume_of(r.composed) / (s * s * s), t.volume, 0.02 * t.volume) << what;
   EXPECT_NEAR(area_of(r.composed) / (s * s), t.area, 0.02 * t.area) << what;
   EXPECT_LE(r.composed.face_count(), 3 * (a.mesh.face_count() + b.mesh.face_count()) + 600) << what;
+  if (std::getenv("SHOWX"))
+    for (const auto& pr : mesh::intersecting_faces(r.composed, 6, 1)) {
+      printf("  X");
+      for (int f : pr) {
+        printf(" [%d:", int(r.face_from_b[f]));
+        for (int k = 0; k < 3; ++k) {
+          Vec3 p = m.inverse() * r.composed.corner(f, k);
+          printf(" (%.4f %.4f %.4f)", p.x(), p.y(), p.z());
+        }
+        printf("]");
+      }
+      printf("\n");
+    }
   if (std::getenv("SHOW"))
     printf("%s: faces %d + %d -> %d, crossings %ld, pieces %d, euler %d, volume %.4f (%.4f) area %.4f (%.4f), cut %d\n",
            what.c_str(), a.mesh.face_count(), b.mesh.face_count(), r.composed.face_count(),
