@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 
+#include "parts/base/disjoint_sets.h"
 #include "parts/mesh/edges.h"
 #include "parts/mesh/loops.h"
 #include "parts/spatial/closest_point.h"
@@ -124,6 +126,56 @@ class BorderLine {
   std::unordered_map<std::uint64_t, int> of_edge_;
 };
 
+/// Fills MeshBorder::keep_level. The line parts a face into patches; one at
+/// which a vertex of the model lies is on its side, of others the values decide.
+void keep_level_faces(const LabelledModel& m, const std::vector<double>& value, const std::vector<char>& passed,
+                      const BorderLine& line, MeshBorder& border) {
+  const WorkMesh& w = m.work;
+  const SplitMesh& split = border.split;
+  const Mesh& mesh = split.mesh;
+  const double sign = m.side ? -1 : 1;
+  const Territory own = m.side ? kOfB : kOfA;
+  std::vector<Territory> label(m.mesh.faces.size(), 0);  // of faces that are not passed
+  for (int f = 0; f < w.mesh.face_count(); ++f) label[w.source[f]] = m.label[f];
+  std::unordered_set<std::uint64_t> on_line;
+  for (const SplitSegment& s : line.segments)
+    on_line.insert(edge_key(split.vertex_of[s.ends[0]], split.vertex_of[s.ends[1]]));
+  DisjointSets patches(mesh.face_count());
+  std::unordered_map<std::uint64_t, int> across;  // per edge within a face of the model: one of its two
+  std::vector<int> level;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (!passed[split.source[f]]) continue;
+    const Triangle& t = mesh.faces[f];
+    for (int k = 0; k < 3; ++k) {
+      const std::uint64_t edge = edge_key(t[k], t[(k + 1) % 3]);
+      if (on_line.count(edge)) continue;
+      const auto [it, fresh] = across.try_emplace(edge, f);
+      if (!fresh && split.source[it->second] == split.source[f]) patches.unite(it->second, f);
+      it->second = f;
+    }
+  }
+  const PartOfFace part(w, passed);
+  std::unordered_map<int, double> vote;  // per patch
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (!passed[split.source[f]]) continue;
+    double known = 0;
+    for (int v : mesh.faces[f]) known += border.value[v];
+    double& sum = vote[patches.find(f)];
+    if (known != 0) {
+      sum += known > 0 ? 1e100 : -1e100;
+      continue;
+    }
+    const int g = part(split.source[f], mesh.center(f));
+    const Vec3 share = barycentric(w.mesh, g, mesh.center(f));
+    const Triangle& n = w.mesh.faces[g];
+    const double at = share[0] * value[n[0]] + share[1] * value[n[1]] + share[2] * value[n[2]];
+    sum += (mesh.area(f) + 1e-300) * (at != 0 ? sign * at : m.label[g] == own ? 1 : -1);
+  }
+  border.keep_level.assign(mesh.faces.size(), 0);
+  for (int f = 0; f < mesh.face_count(); ++f)
+    border.keep_level[f] = passed[split.source[f]] ? vote[patches.find(f)] > 0 : label[split.source[f]] == own;
+}
+
 }  // namespace
 
 MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool even) {
@@ -152,24 +204,7 @@ MeshBorder smooth_border(const LabelledModel& m, const SeamValues& values, bool 
   for (int v = 0; v < m.mesh.vertex_count(); ++v) border.value[v] = sign * value[v];
   for (std::size_t p = 0; p < line.points.size(); ++p)
     if (line.points[p].vertex < 0) border.value[split.vertex_of[p]] = sign * line.values[p];
-  const PartOfFace part(w, passed);
-  border.keep_level.assign(split.mesh.faces.size(), 0);
-  std::vector<Territory> own_label(m.mesh.faces.size(), 0);
-  for (int f = 0; f < w.mesh.face_count(); ++f) own_label[w.source[f]] = m.label[f];
-  for (int f = 0; f < split.mesh.face_count(); ++f) {
-    const Triangle& t = split.mesh.faces[f];
-    if (border.value[t[0]] != 0 || border.value[t[1]] != 0 || border.value[t[2]] != 0) continue;
-    const int source = split.source[f];
-    if (!passed[source]) {  // all its sides are pinned
-      border.keep_level[f] = own_label[source] == (m.side ? kOfB : kOfA);
-      continue;
-    }
-    const int g = part(source, split.mesh.center(f));
-    const Vec3 share = barycentric(w.mesh, g, split.mesh.center(f));
-    const Triangle& n = w.mesh.faces[g];
-    const double at = sign * (share[0] * value[n[0]] + share[1] * value[n[1]] + share[2] * value[n[2]]);
-    border.keep_level[f] = at != 0 ? at > 0 : m.label[g] == (m.side ? kOfB : kOfA);
-  }
+  keep_level_faces(m, value, passed, line, border);
   return border;
 }
 
