@@ -30,6 +30,7 @@ class Smoother {
   void share_values();
   void choose_unknowns(int x);
   void share_unknowns();
+  void snap();
   void add(int x, int v, int y, int u, double weight);
   void add_mesh(int x);
   void add_springs(int x);
@@ -262,7 +263,7 @@ void Smoother::solve() {
   share_values();
   for (int x : {0, 1}) choose_unknowns(x);
   share_unknowns();
-  if (unknowns_ == 0) return;
+  if (unknowns_ == 0) return snap();
   const int n = unknowns_;
   right_.setZero(n);
   for (int x : {0, 1}) add_mesh(x);
@@ -270,11 +271,35 @@ void Smoother::solve() {
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(matrix_.begin(), matrix_.end());
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  if (solver.info() != Eigen::Success) return;  // the labels' mean stays
+  if (solver.info() != Eigen::Success) return snap();  // the labels' mean stays
   const Eigen::VectorXd solved = solver.solve(right_);
   for (int x : {0, 1})
     for (std::size_t v = 0; v < number_[x].size(); ++v)
       if (number_[x][v] >= 0) out_.value[x][v] = std::clamp(solved[number_[x][v]], -1.0, 1.0);
+  snap();
+}
+
+/// A border that passes close by a vertex goes through it: no slivers come about. Only these and pinned
+/// vertices lie on the border itself.
+void Smoother::snap() {
+  constexpr double kClose = 0.05;  // of an edge
+  std::vector<char> close(unknowns_, 0);
+  for (int x : {0, 1})
+    for (const WorkMesh::Edge& e : work(x).edges) {
+      const double low = out_.value[x][e.low], high = out_.value[x][e.high];
+      if (!(low * high < 0)) continue;
+      const double share = low / (low - high);
+      if (const int n = number_[x][e.low]; n >= 0 && share < kClose) close[n] = 1;
+      if (const int n = number_[x][e.high]; n >= 0 && share > 1 - kClose) close[n] = 1;
+    }
+  for (int x : {0, 1})
+    for (std::size_t v = 0; v < number_[x].size(); ++v) {
+      double& value = out_.value[x][v];
+      if (number_[x][v] >= 0 && close[number_[x][v]])
+        value = 0;
+      else if (value == 0 && !zero_[x][v])
+        value = 1e-6;
+    }
 }
 
 }  // namespace
@@ -287,15 +312,6 @@ SeamValues smooth_values(const Model& a, const Model& b, const MeshProblem& prob
   smoother.pin(curve);
   smoother.find_partners(curve);
   smoother.solve();
-  // Only pinned vertices lie on the border itself.
-  for (int x : {0, 1}) {
-    std::vector<char> zero(values.value[x].size(), 0);
-    for (std::size_t s = 0; s < values.pinned.size(); ++s)
-      if (values.pinned[s])
-        for (int end : curve.segments[s].ends) zero[problem.side[x].vertex_of[end]] = 1;
-    for (std::size_t v = 0; v < zero.size(); ++v)
-      if (values.value[x][v] == 0 && !zero[v]) values.value[x][v] = 1e-6;
-  }
   return values;
 }
 
