@@ -102,7 +102,8 @@ void expect_union(const Touching& t, const std::string& what, unsigned seed) {
     printf("%s: faces %d + %d -> %d, crossings %ld, pieces %d, euler %d, volume %.4f (%.4f) area %.4f (%.4f), cut %d\n",
            what.c_str(), a.mesh.face_count(), b.mesh.face_count(), r.composed.face_count(),
            mesh::self_intersections(r.composed), c.components, c.euler, volume_of(r.composed) / (s * s * s), t.volume,
-           area_of(r.composed) / (s * s), t.area, int(r.report.cut));
+           area_of(r.composed) / (s * s), t.area, int(r.report.cut)),
+        printf("   open %d capped %d joined %d\n", r.report.loops_open, r.report.loops_capped, r.report.loops_joined);
 }
 
 constexpr unsigned kSeeds = 24;
