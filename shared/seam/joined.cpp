@@ -96,11 +96,14 @@ void set_shape(Mesh& m, const Shape& s) { m.vertices = s.vertices, m.faces = s.f
 long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, const SeamSmoothing& smoothing,
                 int threads) {
   j.blend = {};
+  std::vector<char> seam = j.seam;  // where there is something to smooth
+  for (char& s : seam)
+    if (s & kStill) s = kNoSeam;
   if (smoothing.blend) {
-    j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+    j.blend = blend_seam(j.mesh, seam, j.fixed, smoothing.blend_distance, j.gap);
     flip_seam(j.mesh, j.seam, j.fixed);
   }
-  smooth_seam(j.mesh, j.seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
+  smooth_seam(j.mesh, seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);
   for (std::size_t v = 0; v < movable.size(); ++v)
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);

@@ -78,8 +78,6 @@ class SeamZone {
 
 /// Whether v's faces that do not hold `except` keep their side when v moves.
 bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
-  Vec3 around = Vec3::Zero();
-  for (int f : star_.at(v)) around += mesh_.area_vector(f);
   for (int f : star_.at(v)) {
     const Triangle& t = mesh_.faces[f];
     if (t[0] == except || t[1] == except || t[2] == except) continue;
@@ -90,11 +88,10 @@ bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (p[k] - p[(k + 1) % 3]).squaredNorm());
     if (after.norm() < 0.02 * longest && after.norm() < before.norm()) return false;
-    // A sliver's own normal means nothing, unless it is as long as to count for something; what becomes of it
-    // must not face away from all around.
-    const double little = 0.1 * std::min(longest, 4 * edge_ * edge_);
-    if (before.norm() > little && after.dot(before) < 0.3 * after.norm() * before.norm()) return false;
-    if (before.norm() <= little && after.norm() > little && after.dot(around) < 0) return false;
+    // A sliver's own normal means nothing, unless it is as long as to count for something.
+    if (before.norm() > 0.1 * std::min(longest, 4 * edge_ * edge_) &&
+        after.dot(before) < 0.3 * after.norm() * before.norm())
+      return false;
   }
   return true;
 }

@@ -28,8 +28,9 @@ struct SeamReport {
 };
 
 /// Which border a vertex was made for, as bits: 3 once the two are one; and
-/// whether they were one from the start, so that it lies on both surfaces.
-enum SeamSide : char { kNoSeam = 0, kBorderA = 1, kBorderB = 2, kWelded = 4 };
+/// whether they were one from the start, so that it lies on both surfaces, and
+/// whether these are one surface there: then nothing is to be smoothed.
+enum SeamSide : char { kNoSeam = 0, kBorderA = 1, kBorderB = 2, kWelded = 4, kStill = 8 };
 
 /// How short edges at the seam must be to collapse, world units.
 struct SeamTidying {

@@ -150,7 +150,7 @@ class Welder {
     for (int f = 0; f < j_.mesh.face_count(); ++f)
       for (int v : j_.mesh.faces[f]) still[v] = still[v] && j_.same[f];
     for (std::size_t v = 0; v < still.size(); ++v)
-      if (still[v]) j_.fixed[v] = 1;
+      if (still[v]) j_.fixed[v] = 1, j_.seam[v] |= kStill;
     HalfEdges left;
     take_out(j_.loops_a, left, &report), take_out(j_.loops_b, left, nullptr);
     close(left);
