@@ -51,6 +51,8 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
     const cut::Model& model = from_b ? b : a;
     const int source = from_b ? cb.source_face[f - ca.mesh.face_count()] : ca.source_face[f];
     j.tag.push_back(from_b);
+    const Clipped& clipped = from_b ? cb : ca;
+    j.same.push_back(!clipped.same.empty() && clipped.same[from_b ? f - ca.mesh.face_count() : f]);
     for (int v : j.mesh.faces[f]) {
       j.like[v] = f;
       j.fixed[v] |= model.keep[source];
@@ -96,11 +98,14 @@ void set_shape(Mesh& m, const Shape& s) { m.vertices = s.vertices, m.faces = s.f
 std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& before, const std::vector<char>& held,
                                            double distance, const SeamSmoothing& smoothing, int threads) {
   j.blend = {};
+  std::vector<char> seam = j.seam;  // where there is something to smooth
+  for (char& s : seam)
+    if (s & kStill) s = kNoSeam;
   if (smoothing.blend) {
-    j.blend = blend_seam(j.mesh, j.seam, held, smoothing.blend_distance, j.gap);
+    j.blend = blend_seam(j.mesh, seam, held, smoothing.blend_distance, j.gap);
     if (j.blend.moved > 0) flip_seam(j.mesh, j.seam, j.fixed);
   }
-  smooth_seam(j.mesh, j.seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
+  smooth_seam(j.mesh, seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);
   for (std::size_t v = 0; v < movable.size(); ++v)
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
@@ -122,7 +127,7 @@ void hold(const Mesh& mesh, const std::vector<std::array<int, 2>>& pairs, double
 long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
   const bool thesis = cut == cut::Cut::Thesis;
   tidy_seam(j.mesh, j.seam, j.fixed, j.tag,
-            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel});
+            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel, voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel, voxel});
   for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
   part_places(j.mesh, j.seam, j.fixed);
