@@ -195,7 +195,7 @@ int RichInputs::choice(const char* name) const {
 
 Vec3 RichInputs::point(const char* name) const {
   const Point3m p = of_type(name, api::as_point(value(name)));
-  const Vec3 point(p.X(), p.Y(), p.Z());
+  Vec3 point(p.X(), p.Y(), p.Z());
   if (!point.allFinite()) throw UserError(std::string(name) + " is not a point; give three numbers.");
   check_size(name, point.cwiseAbs().maxCoeff());
   return point;

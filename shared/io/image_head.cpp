@@ -182,7 +182,7 @@ std::optional<ImageHead> head_from(const Source& source) {
   if (starts("\x89PNG", 4)) head = png_head(source);
   if (starts("\xFF\xD8", 2)) head = jpeg_head(source);
   if (starts("II*", 3) || starts("II+", 3)) head = tiff_head(source, false);
-  if (starts("MM\0", 3)) head = tiff_head(source, true);
+  if (starts("MM", 2) && start[2] == 0) head = tiff_head(source, true);
   if (starts("BM", 2)) head = bmp_head(source);
   if (start[0] == 'P' && std::string_view("123456Ff").find(start[1]) != std::string_view::npos) head = pnm_head(source);
   if (starts("RIFF", 4) && start.size() >= 12 && starts("WEBP", 4, 8)) head = webp_head(source);
