@@ -75,7 +75,7 @@ class Closing {
       for (int k = 0; k < 3; ++k) out.vertices.push_back(mesh_.corner(f, k));
       out.faces.push_back({first, first + 1, first + 2});
     };
-    tree_.for_each_overlap(spatial::FaceTree(whole_box), [&](int f, int) { take(f); });
+    tree_.for_each_overlap(spatial::FaceTree(whole_box), 0, [&](int f, int) { take(f); });
     for (int f = own_faces_; f < mesh_.face_count(); ++f)  // earlier lids
       if (box.intersects(mesh_.face_box(f))) take(f);
     return out;

@@ -133,7 +133,7 @@ std::string broken(const MendScene& scene, SceneTally& tally) {
   mend::Mended m;
   try {
     Progress silent;
-    m = mend::mend_scan(in.scan, *database, options, silent);
+    m = mend::mend_scan(in.scan, &*database, options, silent);
   } catch (const UserError&) {
     ++tally.refused;
     return {};
