@@ -5,6 +5,7 @@
 
 #include "parts/compose/clip_border.h"
 #include "parts/seam/joined.h"
+#include "parts/seam/weld.h"
 
 namespace parts::compose {
 
@@ -16,6 +17,7 @@ void assemble(const cut::Model& a, seam::Clipped clipped_a, const cut::Model& b,
   report.seam_edge = measure.edge;
   report.loops_a = int(joined.loops_a.size()), report.loops_b = int(joined.loops_b.size());
   if (options.stitch) {
+    seam::weld_borders(joined, measure.step, report);
     t.flaws = seam::stitch_parts(joined, measure.max_gap, report);
     progress.at(0.6);
     t.flaws +=

@@ -8,8 +8,9 @@ namespace parts::compose {
 
 /// What the seam is measured by.
 struct SeamMeasure {
-  double edge;     ///< world units: its edges' length
-  double max_gap;  ///< world units: borders farther apart do not face each other
+  double edge;      ///< world units: its edges' length
+  double max_gap;   ///< world units: borders farther apart do not face each other
+  double step = 0;  ///< world units: borders no farther apart than this share their points
 };
 
 /// A composition and what is wrong with its seam.

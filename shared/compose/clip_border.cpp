@@ -25,6 +25,7 @@ class BorderClipper {
         source_(border.split.source),
         live_(mesh_.faces.size(), 1),
         value_(border.value),
+        same_(border.same),
         whole_vertices_(mesh_.vertex_count()) {
     mesh::for_each_mesh_edge(mesh::sorted_half_edges(mesh_), [&](auto first, auto last) {
       if (last - first == 1) own_border_.insert(edge_key(first->from, first->to));
@@ -40,6 +41,8 @@ class BorderClipper {
     std::vector<int> old_vertex, old_face, number(mesh_.vertices.size(), -1);
     out.mesh = mesh::take_faces(mesh_, live_, &old_vertex, &old_face);
     for (int f : old_face) out.source_face.push_back(source_[f]);
+    if (!same_.empty())
+      for (int f : old_face) out.same.push_back(same_[f]);
     for (std::size_t v = 0; v < old_vertex.size(); ++v) number[old_vertex[v]] = int(v);
     out.cut_vertex.assign(old_vertex.size(), 0);
     for (const auto& [from, to] : border) {
@@ -78,6 +81,7 @@ class BorderClipper {
   void add(int parent, const Triangle& v, const std::array<Vec3, 3>& at) {
     mesh::add_face_within(mesh_, parent, v, at);
     source_.push_back(source_[parent]), live_.push_back(1);
+    if (!same_.empty()) same_.push_back(same_[parent]);
   }
 
   void clip_face(int f) {
@@ -189,6 +193,7 @@ class BorderClipper {
   std::vector<int> source_;
   std::vector<char> live_;
   std::vector<double> value_;
+  std::vector<char> same_;
   const int whole_vertices_;
   std::unordered_map<std::uint64_t, Crossing> crossing_;
   std::unordered_map<int, std::uint64_t> edge_of_;  ///< per new vertex

@@ -47,7 +47,8 @@ Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume
   Assembly t;
   progress.stage("Finding the minimal cut", 10, 60);
   cut::check_volume(a, volume), cut::check_volume(b, volume);
-  const cut::MeshCut cut = cut::cut_meshes(a, b, volume, options.threads, t.result.report, progress);
+  const cut::MeshCut cut =
+      cut::cut_meshes(a, b, volume, options.smoothing.blend, options.threads, t.result.report, progress);
   progress.stage("Clipping", 60, 75);
   const double crumb = 1.5 * cut.edge;
   seam::Clipped clipped[2] = {clip_border(cut.border[0], a.keep, crumb), clip_border(cut.border[1], b.keep, crumb)};
@@ -57,8 +58,8 @@ Assembly by_mesh_cut(const cut::Model& a, const cut::Model& b, const Box& volume
     clipped[1] = clip_border(cut.raw_border(1), b.keep, crumb);
   }
   if (options.transition_surface) t.result.transition = surface_between(clipped[0].mesh, clipped[1].mesh, volume);
-  assemble(a, std::move(clipped[0]), b, std::move(clipped[1]), {cut.edge, 3 * cut.edge + 1.5 * cut.gap}, options,
-           progress, t);
+  assemble(a, std::move(clipped[0]), b, std::move(clipped[1]), {cut.edge, 3 * cut.edge + 1.5 * cut.gap, cut.step},
+           options, progress, t);
   return t;
 }
 
@@ -106,7 +107,7 @@ Attempt at_resolution(cut::Model& a, cut::Model& b, const Box& volume, int resol
   seam::Clipped clipped_b = clip_by_voxels(b, false, d, transition, options.threads);
   if (options.transition_surface) t.result.transition = cut::transition_surface(d.voxels, d.labels, 0);
   const double voxel = t.result.report.voxel_size;
-  assemble(a, std::move(clipped_a), b, std::move(clipped_b), {voxel, 3 * voxel}, options, progress, t);
+  assemble(a, std::move(clipped_a), b, std::move(clipped_b), {voxel, 3 * voxel, 0}, options, progress, t);
   return attempt;
 }
 
@@ -146,26 +147,34 @@ Assembly by_voxel_cut(cut::Model& a, cut::Model& b, const Box& volume, const Com
   }
 }
 
-/// What is wrong with a seam, the worst first: edges of more than two faces, pieces
-/// more than of either model, borders that face none and crossing faces.
-std::array<double, 3> flaws_of(const Assembly& t, const cut::Model& a, const cut::Model& b) {
+/// What is wrong with a seam, in units of SeamScore::total(): edges of more than two faces and pieces more
+/// than the models', borders that face none and crossing faces at the price that unfaced borders have there.
+double flaws_of(const Assembly& t, const cut::Model& a, const cut::Model& b, double scale) {
+  constexpr double kNonManifold = 1e6;  // an edge of more than two faces: no seam is worth it
+  constexpr double kPiece = 10;
+  const double per_length = cut::SeamScore::kReach / cut::SeamScore::kLambda / scale;
   const mesh::MeshCheck made = mesh::check(t.result.composed), of_a = mesh::check(a.prepared.mesh),
                         of_b = mesh::check(b.prepared.mesh);
-  return {double(std::max(0, made.nonmanifold_edges - of_a.nonmanifold_edges - of_b.nonmanifold_edges)),
-          double(std::max(0, made.components - std::max(of_a.components, of_b.components))), t.flaws};
+  return kNonManifold * std::max(0, made.nonmanifold_edges - of_a.nonmanifold_edges - of_b.nonmanifold_edges) +
+         kPiece * std::max(0, made.components - std::max(of_a.components, of_b.components)) + per_length * t.flaws;
 }
 
-/// The mesh cut; where its seam has flaws, the thesis' cut if that has fewer.
+/// The mesh cut; where its seam has flaws, the thesis' cut if seam and flaws together are better.
 Assembly by_the_better_cut(cut::Model& a, cut::Model& b, const Box& volume, const ComposeOptions& options,
                            Progress& progress) {
-  const std::array<double, 3> none{0, 0, 0};
+  const double scale = std::min(cut::rms_size(a.prepared.mesh), cut::rms_size(b.prepared.mesh));
   Assembly first = by_mesh_cut(a, b, volume, options, progress);
-  const std::array<double, 3> flaws = flaws_of(first, a, b);
+  const double flaws = flaws_of(first, a, b, scale);
   const bool marked = std::count(a.drop.begin(), a.drop.end(), 1) + std::count(b.drop.begin(), b.drop.end(), 1) > 0;
-  if (flaws == none || !options.stitch || marked) return first;
+  if (flaws == 0 || !options.stitch || marked) return first;
+  const auto seam = [&](const Assembly& t) {
+    return cut::score_seam(cut::borders_of(a.prepared.mesh, t.result.clipped_a),
+                           cut::borders_of(b.prepared.mesh, t.result.clipped_b), scale)
+        .total();
+  };
   try {
     Assembly second = by_voxel_cut(a, b, volume, options, progress);
-    if (flaws_of(second, a, b) < flaws) {
+    if (seam(second) + flaws_of(second, a, b, scale) < seam(first) + flaws) {
       second.result.report.cut = cut::Cut::Thesis;
       return second;
     }

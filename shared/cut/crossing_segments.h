@@ -8,17 +8,17 @@
 
 namespace parts::cut {
 
-/// A point in which an edge of one mesh passes through a face of the other: a
-/// split point of both.
+/// A point that both meshes have: an edge of one passes through a face of the
+/// other there, or they touch. On each mesh it may lie at a vertex, on an edge
+/// or in a face.
 struct CrossingPoint {
-  Vec3 position;
-  bool edge_of_a;
-  std::array<int, 2> edge;  ///< its vertices, the lower first
-  double share;             ///< of the way from the lower vertex
-  int face;                 ///< of the other mesh
+  std::array<SplitPoint, 2> on;  ///< of A, of B
+
+  const Vec3& position() const { return on[0].position; }
 };
 
-/// A piece of the curve in which the meshes cross: face_a crosses face_b there.
+/// A line that both meshes have: face_a crosses face_b there, or a side of one
+/// lies in the other.
 struct CrossingSegment {
   int face_a, face_b;
   std::array<int, 2> ends;  ///< indices of points
@@ -27,16 +27,25 @@ struct CrossingSegment {
 struct CrossingCurve {
   std::vector<CrossingPoint> points;
   std::vector<CrossingSegment> segments;
+  double step = 0;  ///< world units: places nearer than this are one
 };
 
-/// Where two meshes cross. Each point is decided by exact orientation tests, the
-/// edge's and the face's vertices in fixed order, so that neighbouring faces
-/// agree; a zero counts as positive, so that meshes that only touch cross in a
-/// consistent way or not at all.
+/// Where two meshes cross or touch. What is nearer than `step` is one place,
+/// decided once for each vertex and each pair of edges, so that neighbouring
+/// faces agree; all else by exact orientation tests on vertices in fixed order.
+/// Where faces lie on each other the sides of both are segments: there the two
+/// meshes can be split into the same faces.
 CrossingCurve find_crossings(const Mesh& a, const spatial::FaceTree& tree_a, const Mesh& b,
-                             const spatial::FaceTree& tree_b);
+                             const spatial::FaceTree& tree_b, double step, int threads);
 
-/// The curve's points as split points of A or of B.
-std::vector<SplitPoint> split_points(const CrossingCurve& curve, const Mesh& mesh, bool of_a);
+/// The place of a mesh that is nearer than `step` to a point: a vertex, or else
+/// on an edge, or else in a face; nowhere if there is none.
+SplitPoint place_on(const Mesh& mesh, const spatial::FaceTree& tree, const Vec3& p, double step);
+
+/// The barycentric coordinates of a face's point that is nearest to p in its plane.
+Vec3 barycentric(const Mesh& mesh, int face, const Vec3& p);
+
+/// The curve's points as split points of A (0) or of B (1).
+std::vector<SplitPoint> split_points(const CrossingCurve& curve, int side);
 
 }  // namespace parts::cut

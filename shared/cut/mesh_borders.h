@@ -13,6 +13,7 @@ struct MeshBorder {
   SplitMesh split;               ///< the model, split where the border passes
   std::vector<double> value;     ///< per vertex of the split mesh
   std::vector<char> keep_level;  ///< per face: whether it is kept where all its values are zero
+  std::vector<char> same;        ///< per face: at the border, and on the other model too; empty: none
 };
 
 /// One model with the labels of its work mesh.
@@ -27,7 +28,8 @@ struct LabelledModel {
 };
 
 /// The border where the values vanish.
-MeshBorder smooth_border(const LabelledModel& model, const SeamValues& values);
+/// @param even  the faces that it passes get the work mesh's other points too, so that they can give way
+MeshBorder smooth_border(const LabelledModel& model, const SeamValues& values, bool even);
 
 /// The border as the labels are, along faces of the work mesh.
 MeshBorder raw_border(const LabelledModel& model);

@@ -18,6 +18,7 @@ struct MeshCut {
   std::function<MeshBorder(int side)> raw_border;
   int loops[2] = {0, 0};  ///< that the labels' borders have
   double edge = 0;        ///< world units: the mean edge at the seam
+  double step = 0;        ///< world units: what is nearer is one place
   double gap = 0;         ///< world units: the farthest that the borders are apart
 };
 
@@ -27,9 +28,10 @@ struct MeshCut {
 /// length; faces that could replace each other, and the sides of the curve in
 /// which the meshes cross, are tied together. Of several minimal cuts, for
 /// growing gaps, the one with the best seam is taken, and found again finer.
+/// @param even  see smooth_border
 /// @pre both models look outward, or both inward
 /// @throws UserError  the models do not meet between their marks
-MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, int threads, CutReport& report,
+MeshCut cut_meshes(const Model& a, const Model& b, const Box& volume, bool even, int threads, CutReport& report,
                    Progress& progress);
 
 }  // namespace parts::cut

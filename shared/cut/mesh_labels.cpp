@@ -39,6 +39,7 @@ class LabelGraph {
         curve_only_(curve_only),
         faces_a_(p.side[0].mesh.face_count()),
         sets_(faces_a_ + p.side[1].mesh.face_count()) {
+    unite_twins();
     for (int x : {0, 1}) add_edges(x);
     for (int x : {0, 1})
       if (!curve_only) add_couplings(x);
@@ -59,6 +60,7 @@ class LabelGraph {
     return std::max<std::int64_t>(1, std::int64_t(std::min(std::round(cost * unit), 1e15)));
   }
   double cost(const WorkMesh& mine, const WorkMesh& other, const WorkMesh::Edge& e) const;
+  void unite_twins();
   void add_edges(int x);
   void add_couplings(int x);
   void add_ties();
@@ -84,6 +86,13 @@ double LabelGraph::cost(const WorkMesh& mine, const WorkMesh& other, const WorkM
   const bool alone = low.beside || high.beside;
   const double turn = mine.turn_to(other, e), share = alone ? 1 : 0.5 + 0.5 * std::clamp(2 * turn, 0.0, 1.0);
   return share * length * (0.5 * (low.distance + high.distance) + lambda * (1 + turn));
+}
+
+/// One surface has one label: exactly one of the two is kept.
+void LabelGraph::unite_twins() {
+  const WorkMesh &a = p_.side[0], &b = p_.side[1];
+  for (int f = 0; f < faces_a_; ++f)
+    if (const int g = a.twin[f]; g >= 0 && a.forced[f] * b.forced[g] >= 0) sets_.unite(node(0, f), node(1, g));
 }
 
 void LabelGraph::add_edges(int x) {

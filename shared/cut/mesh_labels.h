@@ -11,11 +11,15 @@ namespace parts::cut {
 
 /// A crossing segment as an edge of both work meshes: who is outside of whom.
 /// One model's outside goes with the other's inside, or the seam there would be
-/// one-sided, or inside out.
+/// one-sided, or inside out. Where the models touch back to back they count as
+/// sunk into each other by a hair: the contact is inside. Where they part after
+/// they were one surface, a_inside and b_outside are twins, and of the others
+/// exactly one goes on.
 struct Tie {
   int segment;                                   ///< of the curve
   int a_outside, a_inside, b_outside, b_inside;  ///< faces
-  double length, turn;                           ///< turn: 1 - cosine between the normals
+  double length, turn;                           ///< turn: 1 - cosine between the normals of what is joined
+  bool clear;                                    ///< the curve is no accident of nearly parallel faces
   bool hidden;                                   ///< inside another part of its own closed model
 };
 

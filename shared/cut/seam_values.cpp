@@ -9,42 +9,48 @@
 namespace parts::cut {
 namespace {
 
-constexpr double kBand = 3;      // edges from the seam within which values are smoothed
-constexpr double kPull = 0.7;    // edges: the radius of the pull to the labels
-constexpr double kSpring = 60;   // of springs, against the pull over the band
-constexpr double kClear = 0.06;  // the least 1 - cosine of an angle that pins the seam to the curve
-constexpr double kAgree = 0.2;   // the least cosine of points that a spring joins
+constexpr double kBand = 3;     // edges from the seam within which values are smoothed
+constexpr double kPull = 0.7;   // edges: the radius of the pull to the labels
+constexpr double kSpring = 60;  // of springs, against the pull over the band
+constexpr double kAgree = 0.2;  // the least cosine of points that a spring joins
 
 class Smoother {
  public:
-  Smoother(const MeshProblem& p, const MeshLabels& l, SeamValues& out) : p_(p), l_(l), out_(out) {}
+  Smoother(const Model& a, const Model& b, const MeshProblem& p, const MeshLabels& l, SeamValues& out)
+      : a_(a), b_(b), p_(p), l_(l), out_(out) {}
 
-  void measure(const Model& a, const Model& b, double longest);
-  void pin(const Model& a, const Model& b, const CrossingCurve& curve);
+  void measure(double longest);
+  void pin(const CrossingCurve& curve);
+  void find_partners(const CrossingCurve& curve);
   void solve();
 
  private:
   const WorkMesh& work(int x) const { return p_.side[x]; }
   void fix_values(int x);
+  void share_values();
   void choose_unknowns(int x);
+  void share_unknowns();
+  void snap();
   void add(int x, int v, int y, int u, double weight);
   void add_mesh(int x);
   void add_springs(int x);
 
+  const Model &a_, &b_;
   const MeshProblem& p_;
   const MeshLabels& l_;
   SeamValues& out_;
   double band_ = 0;
   std::vector<char> at_seam_[2], fixed_[2], zero_[2];  // per vertex
   std::vector<int> number_[2];                         // per vertex: of its unknown, -1 if it is known
-  std::vector<std::array<int, 2>> unknown_;            // side, vertex
+  int unknowns_ = 0;
+  std::vector<int> partner_;  // per vertex of B: A's at its place, or -1
   std::vector<double> vertex_area_[2];
   std::vector<Eigen::Triplet<double>> matrix_;
   Eigen::VectorXd right_;
 };
 
 /// The seam's vertices, its edges' length and how far the borders are apart.
-void Smoother::measure(const Model& a, const Model& b, double longest) {
+void Smoother::measure(double longest) {
   double gaps = 0, length = 0, edges = 0;
   long count = 0;
   for (int x : {0, 1}) {
@@ -59,7 +65,7 @@ void Smoother::measure(const Model& a, const Model& b, double longest) {
       const double d = std::min(std::max(w.vertex_near[e.low].distance, w.vertex_near[e.high].distance), l_.reach);
       gaps += l * d, out_.gap = std::max(out_.gap, d);
     }
-    const Mesh& m = (x ? b : a).prepared.mesh;
+    const Mesh& m = (x ? b_ : a_).prepared.mesh;
     std::vector<char> counted(m.faces.size(), 0);
     for (int f = 0; f < w.mesh.face_count(); ++f) {
       const Triangle& t = w.mesh.faces[f];
@@ -74,11 +80,11 @@ void Smoother::measure(const Model& a, const Model& b, double longest) {
 }
 
 /// Pins the seam to the curve where the models cross at a clear angle.
-void Smoother::pin(const Model& a, const Model& b, const CrossingCurve& curve) {
+void Smoother::pin(const CrossingCurve& curve) {
   out_.pinned.assign(curve.segments.size(), 0);
   std::vector<char> still[2];  // vertices of faces that stay whole
   for (int x : {0, 1}) {
-    const Model& model = x ? b : a;
+    const Model& model = x ? b_ : a_;
     still[x].assign(model.prepared.mesh.vertices.size(), 0);
     for (int f = 0; f < work(x).mesh.face_count(); ++f)
       if (const int s = work(x).source[f]; model.keep[s] || work(x).whole[f])
@@ -88,11 +94,12 @@ void Smoother::pin(const Model& a, const Model& b, const CrossingCurve& curve) {
   for (const Tie& t : p_.ties) {
     if (l_.label[0][t.a_outside] == l_.label[0][t.a_inside] || l_.label[1][t.b_outside] == l_.label[1][t.b_inside])
       continue;
-    bool free = t.turn >= kClear;
-    for (int end : curve.segments[t.segment].ends) {
-      const CrossingPoint& p = curve.points[end];
-      free = free && !(still[!p.edge_of_a][p.edge[0]] && still[!p.edge_of_a][p.edge[1]]);
-    }
+    bool free = t.clear;
+    for (int end : curve.segments[t.segment].ends)
+      for (int x : {0, 1}) {
+        const std::array<int, 2>& edge = curve.points[end].on[x].edge;
+        free = free && !(edge[0] >= 0 && still[x][edge[0]] && still[x][edge[1]]);
+      }
     if (!free) continue;
     out_.pinned[t.segment] = 1;
     for (int end : curve.segments[t.segment].ends)
@@ -117,8 +124,38 @@ void Smoother::fix_values(int x) {
     for (int f = 0; f < w.mesh.face_count(); ++f)
       if ((w.forced[f] || w.whole[f]) && (label[f] == own) == kept)
         for (int v : w.mesh.faces[f]) value[v] = label[f], fixed_[x][v] = 1;
+  // But where the border is pinned it may end along what is kept.
   for (std::size_t v = 0; v < value.size(); ++v)
-    if (zero_[x][v] && !fixed_[x][v]) value[v] = 0, fixed_[x][v] = 1;
+    if (zero_[x][v]) value[v] = 0, fixed_[x][v] = 1;
+}
+
+/// Vertices of B that lie where one of A does, and where the two are one surface, have its value.
+void Smoother::find_partners(const CrossingCurve& curve) {
+  partner_.assign(work(1).mesh.vertices.size(), -1);
+  std::vector<char> of_twin[2];
+  for (int x : {0, 1}) {
+    of_twin[x].assign(work(x).mesh.vertices.size(), 0);
+    for (int f = 0; f < work(x).mesh.face_count(); ++f)
+      if (work(x).twin[f] >= 0)
+        for (int v : work(x).mesh.faces[f]) of_twin[x][v] = 1;
+  }
+  for (std::size_t p = 0; p < curve.points.size(); ++p) {
+    const int v = work(0).vertex_of[p], u = work(1).vertex_of[p];
+    if (v >= 0 && u >= 0 && of_twin[0][v] && of_twin[1][u]) partner_[u] = v;
+  }
+}
+
+/// What is known of one of two partners holds for both.
+void Smoother::share_values() {
+  for (int u = 0; u < int(partner_.size()); ++u) {
+    const int v = partner_[u];
+    if (v < 0) continue;
+    double &of_a = out_.value[0][v], &of_b = out_.value[1][u];
+    if (fixed_[0][v] && !fixed_[1][u])
+      of_b = of_a, fixed_[1][u] = 1;
+    else if (fixed_[1][u] && !fixed_[0][v])
+      of_a = of_b, fixed_[0][v] = 1;
+  }
 }
 
 /// Vertices within the band along edges of the seam.
@@ -140,11 +177,30 @@ void Smoother::choose_unknowns(int x) {
     const auto [d, v] = queue.top();
     queue.pop();
     if (d > away[v]) continue;
-    if (!fixed_[x][v]) number_[x][v] = int(unknown_.size()), unknown_.push_back({x, v});
+    if (!fixed_[x][v]) number_[x][v] = unknowns_++;
     for (int k = start[v]; k < start[v + 1]; ++k)
       if (const double e = d + (m.vertices[next[k]] - m.vertices[v]).norm(); e < away[next[k]] && e < band_)
         queue.push({away[next[k]] = e, next[k]});
   }
+}
+
+/// Partners are one unknown. (The other's number is left over.)
+void Smoother::share_unknowns() {
+  for (int u = 0; u < int(partner_.size()); ++u) {
+    const int v = partner_[u];
+    if (v < 0 || fixed_[0][v] || fixed_[1][u]) continue;
+    int &of_a = number_[0][v], &of_b = number_[1][u];
+    (of_a >= 0 ? of_b : of_a) = of_a >= 0 ? of_a : of_b;
+  }
+  int next = 0;
+  std::vector<int> renumbered(unknowns_, -1);
+  for (int x : {0, 1})
+    for (int& n : number_[x])
+      if (n >= 0) {
+        if (renumbered[n] < 0) renumbered[n] = next++;
+        n = renumbered[n];
+      }
+  unknowns_ = next;
 }
 
 /// Adds weight * (value of x's v - value of y's u)².
@@ -204,18 +260,46 @@ void Smoother::add_springs(int x) {
 
 void Smoother::solve() {
   for (int x : {0, 1}) fix_values(x);
+  share_values();
   for (int x : {0, 1}) choose_unknowns(x);
-  if (unknown_.empty()) return;
-  const int n = int(unknown_.size());
+  share_unknowns();
+  if (unknowns_ == 0) return snap();
+  const int n = unknowns_;
   right_.setZero(n);
   for (int x : {0, 1}) add_mesh(x);
   for (int x : {0, 1}) add_springs(x);
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(matrix_.begin(), matrix_.end());
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  if (solver.info() != Eigen::Success) return;  // the labels' mean stays
+  if (solver.info() != Eigen::Success) return snap();  // the labels' mean stays
   const Eigen::VectorXd solved = solver.solve(right_);
-  for (int i = 0; i < n; ++i) out_.value[unknown_[i][0]][unknown_[i][1]] = std::clamp(solved[i], -1.0, 1.0);
+  for (int x : {0, 1})
+    for (std::size_t v = 0; v < number_[x].size(); ++v)
+      if (number_[x][v] >= 0) out_.value[x][v] = std::clamp(solved[number_[x][v]], -1.0, 1.0);
+  snap();
+}
+
+/// A border that passes close by a vertex goes through it: no slivers come about. Only these and pinned
+/// vertices lie on the border itself.
+void Smoother::snap() {
+  constexpr double kClose = 0.05;  // of an edge
+  std::vector<char> close(unknowns_, 0);
+  for (int x : {0, 1})
+    for (const WorkMesh::Edge& e : work(x).edges) {
+      const double low = out_.value[x][e.low], high = out_.value[x][e.high];
+      if (!(low * high < 0)) continue;
+      const double share = low / (low - high);
+      if (const int n = number_[x][e.low]; n >= 0 && share < kClose) close[n] = 1;
+      if (const int n = number_[x][e.high]; n >= 0 && share > 1 - kClose) close[n] = 1;
+    }
+  for (int x : {0, 1})
+    for (std::size_t v = 0; v < number_[x].size(); ++v) {
+      double& value = out_.value[x][v];
+      if (number_[x][v] >= 0 && close[number_[x][v]])
+        value = 0;
+      else if (value == 0 && !zero_[x][v])
+        value = 1e-6;
+    }
 }
 
 }  // namespace
@@ -223,19 +307,11 @@ void Smoother::solve() {
 SeamValues smooth_values(const Model& a, const Model& b, const MeshProblem& problem, const MeshLabels& labels,
                          const CrossingCurve& curve, double longest) {
   SeamValues values;
-  Smoother smoother(problem, labels, values);
-  smoother.measure(a, b, longest);
-  smoother.pin(a, b, curve);
+  Smoother smoother(a, b, problem, labels, values);
+  smoother.measure(longest);
+  smoother.pin(curve);
+  smoother.find_partners(curve);
   smoother.solve();
-  // Only pinned vertices lie on the border itself.
-  for (int x : {0, 1}) {
-    std::vector<char> zero(values.value[x].size(), 0);
-    for (std::size_t s = 0; s < values.pinned.size(); ++s)
-      if (values.pinned[s])
-        for (int end : curve.segments[s].ends) zero[problem.side[x].vertex_of[end]] = 1;
-    for (std::size_t v = 0; v < zero.size(); ++v)
-      if (values.value[x][v] == 0 && !zero[v]) values.value[x][v] = 1e-6;
-  }
   return values;
 }
 

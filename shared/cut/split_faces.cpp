@@ -70,7 +70,10 @@ class Splitter {
   void split_edges(const std::vector<char>& used) {
     std::vector<int> order;
     for (int p = 0; p < int(points_.size()); ++p)
-      if (used[p] && points_[p].face < 0) order.push_back(p);
+      if (used[p] && points_[p].vertex >= 0)
+        out.vertex_of[p] = points_[p].vertex;
+      else if (used[p] && points_[p].face < 0)
+        order.push_back(p);
     const auto place = [&](int p) {
       return std::tuple(points_[p].edge[0], points_[p].edge[1], grid_place(points_[p].share), p);
     };

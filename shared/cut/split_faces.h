@@ -8,19 +8,35 @@
 
 namespace parts::cut {
 
-/// A point at which faces of a mesh may be split: on an edge, or in a face.
+/// A point at which faces of a mesh may be split: on an edge, or in a face. One
+/// that a vertex is at already splits nothing.
 struct SplitPoint {
-  Vec3 position;
-  std::array<int, 2> edge{-1, -1};  ///< its vertices, the lower first; -1: in a face
+  Vec3 position = Vec3::Zero();
+  std::array<int, 2> edge{-1, -1};  ///< its vertices, the lower first; -1: on none
   double share = 0;                 ///< of the way from the lower vertex, 0..1
-  int face = -1;
+  int face = -1;                    ///< -1: in none
   Vec3 barycentric = Vec3::Zero();
+  int vertex = -1;  ///< -1: at none
 
   static SplitPoint on_edge(const Vec3& position, int low, int high, double share) {
-    return {position, {low, high}, share, -1, Vec3::Zero()};
+    return {position, {low, high}, share, -1, Vec3::Zero(), -1};
   }
   static SplitPoint in_face(const Vec3& position, int face, const Vec3& barycentric) {
-    return {position, {-1, -1}, 0, face, barycentric};
+    return {position, {-1, -1}, 0, face, barycentric, -1};
+  }
+  static SplitPoint at_vertex(const Vec3& position, int vertex) {
+    return {position, {-1, -1}, 0, -1, Vec3::Zero(), vertex};
+  }
+
+  bool anywhere() const { return vertex >= 0 || edge[0] >= 0 || face >= 0; }
+  bool on(int low, int high) const {
+    return vertex >= 0 ? vertex == low || vertex == high : edge[0] == low && edge[1] == high;
+  }
+  /// Whether it lies in a face of the mesh, or on its sides.
+  bool within(const Mesh& mesh, int f) const {
+    const Triangle& t = mesh.faces[f];
+    const auto corner = [&](int v) { return t[0] == v || t[1] == v || t[2] == v; };
+    return vertex >= 0 ? corner(vertex) : edge[0] >= 0 ? corner(edge[0]) && corner(edge[1]) : face == f;
   }
 };
 

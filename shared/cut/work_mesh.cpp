@@ -61,6 +61,7 @@ WorkMesh make_work_mesh(const Model& model, const Box& volume, const std::vector
   measure(w);
   find_edges(w);
   w.forced.resize(w.mesh.faces.size()), w.whole.resize(w.mesh.faces.size());
+  w.twin.assign(w.mesh.faces.size(), -1);
   for (int f = 0; f < w.mesh.face_count(); ++f) {
     w.forced[f] = forced[w.source[f]];
     w.whole[f] = !volume.contains(model.prepared.mesh.face_box(w.source[f]));

@@ -41,6 +41,7 @@ struct WorkMesh {
   std::vector<double> area;       ///< per face
   std::vector<Territory> forced;  ///< per face: where marks, or a coarser cut, leave no choice
   std::vector<char> whole;        ///< per face: not wholly within the volume, so never cut
+  std::vector<int> twin;          ///< per face: the other's face that it is one with, between the same points; or -1
   std::vector<Edge> edges;
   std::vector<int> edge_faces;
   std::vector<char> at_border;  ///< per face: has an edge without a second face

@@ -22,6 +22,7 @@ struct Clipped {
   std::vector<int> source_face;            ///< per face: its index in the input
   std::vector<char> cut_vertex;            ///< per vertex: 1 if made by the cut
   std::vector<std::array<int, 2>> border;  ///< vertex indices
+  std::vector<char> same;                  ///< per face: lies on the other model too; empty: none does
 };
 
 /// Clips a mesh by the sign of a field (thesis 3.2.4). Faces that the zero set

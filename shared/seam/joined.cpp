@@ -50,6 +50,8 @@ Joined join_parts(const cut::Model& a, const Clipped& ca, const cut::Model& b, c
     const cut::Model& model = from_b ? b : a;
     const int source = from_b ? cb.source_face[f - ca.mesh.face_count()] : ca.source_face[f];
     j.tag.push_back(from_b);
+    const Clipped& clipped = from_b ? cb : ca;
+    j.same.push_back(!clipped.same.empty() && clipped.same[from_b ? f - ca.mesh.face_count() : f]);
     for (int v : j.mesh.faces[f]) {
       j.like[v] = f;
       j.fixed[v] |= model.keep[source];
@@ -94,11 +96,14 @@ void set_shape(Mesh& m, const Shape& s) { m.vertices = s.vertices, m.faces = s.f
 long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, const SeamSmoothing& smoothing,
                 int threads) {
   j.blend = {};
+  std::vector<char> seam = j.seam;  // where there is something to smooth
+  for (char& s : seam)
+    if (s & kStill) s = kNoSeam;
   if (smoothing.blend) {
-    j.blend = blend_seam(j.mesh, j.seam, j.fixed, smoothing.blend_distance, j.gap);
+    j.blend = blend_seam(j.mesh, seam, j.fixed, smoothing.blend_distance, j.gap);
     flip_seam(j.mesh, j.seam, j.fixed);
   }
-  smooth_seam(j.mesh, j.seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
+  smooth_seam(j.mesh, seam, j.fixed, distance, smoothing.iterations, smoothing.weight);
   std::vector<char> movable(j.mesh.vertices.size(), 0);
   for (std::size_t v = 0; v < movable.size(); ++v)
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
@@ -111,7 +116,7 @@ long smooth_all(Joined& j, const std::vector<Vec3>& before, double distance, con
 long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smoothing, int threads) {
   const bool thesis = cut == cut::Cut::Thesis;
   tidy_seam(j.mesh, j.seam, j.fixed, j.tag,
-            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel});
+            thesis ? SeamTidying{0.2 * voxel, 0.2 * voxel, voxel} : SeamTidying{0.35 * voxel, 1.2 * voxel, voxel});
   for (int v : mesh::split_pinches(j.mesh, j.seam)) j.seam.push_back(j.seam[v]), j.fixed.push_back(j.fixed[v]);
   const std::vector<Vec3> before = j.mesh.vertices;
   part_places(j.mesh, j.seam, j.fixed);

@@ -16,6 +16,7 @@ struct Joined {
   std::vector<char> tag;     ///< per face: 0 from A, 1 from B, 2 from the stitch
   std::vector<char> seam;    ///< per vertex: SeamSide, made by the cut
   std::vector<char> fixed;   ///< per vertex: of a kept face
+  std::vector<char> same;    ///< per face of the two: lies on the other model too
   std::vector<int> like;     ///< per vertex: a face at it
   std::vector<char> closed;  ///< per vertex: a contour that the cut made all around at such vertices is capped
   /// The contours to be stitched. Of an open model they may run on along the

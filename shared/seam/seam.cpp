@@ -63,7 +63,8 @@ class SeamZone {
       if (shared_faces(v, u).size() != 2) return false;
     return true;
   }
-  bool try_collapse(int gone, int stays, const Vec3& to);
+  bool try_collapse(int gone, int stays, const Vec3& to, double most_swept);
+  double swept(int v, const Vec3& to) const;
   bool moves_well(int v, const Vec3& to, int except) const;
   bool try_flip(int u, int v);
 
@@ -71,6 +72,7 @@ class SeamZone {
   std::vector<char>& seam_;
   const std::vector<char>& fixed_;
   std::vector<char> dead_;
+  double edge_ = 1e100;  ///< the seam's mean edge
   std::unordered_map<int, std::vector<int>> star_;
 };
 
@@ -86,13 +88,23 @@ bool SeamZone::moves_well(int v, const Vec3& to, int except) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (p[k] - p[(k + 1) % 3]).squaredNorm());
     if (after.norm() < 0.02 * longest && after.norm() < before.norm()) return false;
-    // A sliver's own normal means nothing.
-    if (before.norm() > 0.1 * longest && after.dot(before) < 0.3 * after.norm() * before.norm()) return false;
+    // A sliver's own normal means nothing, unless it is as long as to count for something.
+    if (before.norm() > 0.1 * std::min(longest, 4 * edge_ * edge_) &&
+        after.dot(before) < 0.3 * after.norm() * before.norm())
+      return false;
   }
   return true;
 }
 
-bool SeamZone::try_collapse(int gone, int stays, const Vec3& to) {
+/// The volume between the surface as it is and with a vertex moved.
+double SeamZone::swept(int v, const Vec3& to) const {
+  double sum = 0;
+  for (int f : star_.at(v)) sum += std::abs(mesh_.area_vector(f).dot(to - mesh_.vertices[v])) / 6;
+  return sum;
+}
+
+/// @param most_swept  of volume, if one of the two was welded
+bool SeamZone::try_collapse(int gone, int stays, const Vec3& to, double most_swept) {
   const std::vector<int> shared = shared_faces(gone, stays);
   if (shared.size() != 2 || !interior(gone) || !interior(stays)) return false;
   const std::vector<int> a = neighbours(gone), b = neighbours(stays);
@@ -102,6 +114,7 @@ bool SeamZone::try_collapse(int gone, int stays, const Vec3& to) {
   for (int c : common)
     if (!star_.count(c) || star_.at(c).size() <= 3) return false;
   if (!moves_well(gone, to, stays) || !moves_well(stays, to, gone)) return false;
+  if (((seam_[gone] | seam_[stays]) & kWelded) && swept(gone, to) + swept(stays, to) > most_swept) return false;
   for (int f : shared) {
     dead_[f] = 1;
     for (int v : mesh_.faces[f]) {
@@ -121,6 +134,7 @@ bool SeamZone::try_collapse(int gone, int stays, const Vec3& to) {
 }
 
 void SeamZone::collapse_short(const SeamTidying& shortest) {
+  if (shortest.edge > 0) edge_ = shortest.edge;
   using Entry = std::pair<double, std::array<int, 2>>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto offer = [&](int u, int v) {
@@ -146,7 +160,7 @@ void SeamZone::collapse_short(const SeamTidying& shortest) {
     if (!at_one_place && (fixed_[gone] || !seam_[gone])) continue;
     const bool both = seam_[stays] && !fixed_[stays];
     const Vec3 middle = 0.5 * (mesh_.vertices[gone] + mesh_.vertices[stays]);
-    if (!try_collapse(gone, stays, both ? middle : mesh_.vertices[stays])) continue;
+    if (!try_collapse(gone, stays, both ? middle : mesh_.vertices[stays], std::pow(edge_, 3))) continue;
     for (int u : neighbours(stays)) offer(stays, u);
   }
 }
@@ -289,7 +303,7 @@ void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char
 
 void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, double distance,
                  int iterations, double weight) {
-  if (iterations <= 0 || weight <= 0) return;
+  if (iterations <= 0 || weight <= 0 || !(distance > 0)) return;
   const Band band = band_around(mesh, seam, distance);
   std::vector<int> moving;
   for (int v : band.vertices)
@@ -298,16 +312,17 @@ void smooth_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
   for (int round = 0; round < iterations; ++round) {
     for (std::size_t i = 0; i < moving.size(); ++i) {
       const int v = moving[i];
-      // Near neighbours count more, so that uneven triangles do not drag.
-      Vec3 mean = Vec3::Zero();
-      double weights = 0;
+      // Near neighbours count more, so that uneven triangles do not drag. Of what reaches beyond the
+      // distance only the near part counts, and less the longer it is: it would be moved as a whole.
+      Vec3 sum = Vec3::Zero();
+      double weights = 0, lengths = 0;
       for (int u : band.around[v]) {
-        const double n = 1 / std::max((mesh.vertices[u] - mesh.vertices[v]).norm(), 1e-300);
-        mean += n * mesh.vertices[u], weights += n;
+        const Vec3 to = mesh.vertices[u] - mesh.vertices[v];
+        const double length = std::max(to.norm(), 1e-300), part = std::min(1.0, 0.5 * distance / length);
+        sum += part / length * to, weights += 1 / length, lengths += length;
       }
-      mean /= weights;
-      const double w = weight * (distance > 0 ? 1 - band.away[v] / distance : 1);
-      next[i] = mesh.vertices[v] + w * (mean - mesh.vertices[v]);
+      const double reach = std::min(1.0, distance * double(band.around[v].size()) / lengths);
+      next[i] = mesh.vertices[v] + weight * reach * (1 - band.away[v] / distance) / weights * sum;
     }
     for (std::size_t i = 0; i < moving.size(); ++i) mesh.vertices[moving[i]] = next[i];
   }

@@ -27,13 +27,16 @@ struct SeamReport {
   bool reversed_b = false;  ///< B's faces were turned to agree with A's
 };
 
-/// Which border a vertex was made for, as bits: 3 once the two are one.
-enum SeamSide : char { kNoSeam = 0, kBorderA = 1, kBorderB = 2 };
+/// Which border a vertex was made for, as bits: 3 once the two are one; and
+/// whether they were one from the start, so that it lies on both surfaces, and
+/// whether these are one surface there: then nothing is to be smoothed.
+enum SeamSide : char { kNoSeam = 0, kBorderA = 1, kBorderB = 2, kWelded = 4, kStill = 8 };
 
 /// How short edges at the seam must be to collapse, world units.
 struct SeamTidying {
   double within = 0;  ///< along a border, and to its neighbours
   double across = 0;  ///< from one border to the other
+  double edge = 0;    ///< the seam's mean edge: no welded vertex sweeps more than its cube
 };
 
 /// Removes slivers along a seam: short edges at seam vertices are collapsed
@@ -56,6 +59,7 @@ void part_places(Mesh& mesh, const std::vector<char>& seam, const std::vector<ch
 
 /// Evens the curve in which the two borders became one: its vertices go to and
 /// fro between their neighbours on it (Taubin 1995), which shortens nothing.
+/// Welded vertices stay: they are where the surfaces cross.
 void even_seam(Mesh& mesh, const std::vector<char>& seam, const std::vector<char>& fixed, int iterations);
 
 /// Averages vertices near the seam with their neighbours (thesis 3.2.5). The

@@ -28,9 +28,9 @@ class FaceTree {
   /// `from` (in lengths of `direction`): +1 where it leaves the solid, -1 where it enters.
   int winding(const Vec3& p, const Vec3& direction, double from) const;
 
-  /// Calls visit(face of this, face of other) for faces whose boxes touch.
+  /// Calls visit(face of this, face of other) for faces whose boxes come as near as `margin`.
   template <class Visit>
-  void for_each_overlap(const FaceTree& other, const Visit& visit) const;
+  void for_each_overlap(const FaceTree& other, double margin, const Visit& visit) const;
 
  private:
   struct Node {
@@ -39,8 +39,9 @@ class FaceTree {
     int begin = 0, end = 0;
   };
   void build(int node, const Mesh& mesh, const std::vector<Vec3>& centers);
-  bool touch(const Node& mine, const Node& theirs) const {
-    return (mine.low.array() <= theirs.high.array()).all() && (theirs.low.array() <= mine.high.array()).all();
+  static bool touch(const Node& mine, const Node& theirs, double margin) {
+    return (mine.low.array() <= theirs.high.array() + margin).all() &&
+           (theirs.low.array() <= mine.high.array() + margin).all();
   }
 
   Box box(int at) const { return Box(corners_[at][0]).extend(corners_[at][1]).extend(corners_[at][2]); }
@@ -51,18 +52,19 @@ class FaceTree {
 };
 
 template <class Visit>
-void FaceTree::for_each_overlap(const FaceTree& other, const Visit& visit) const {
+void FaceTree::for_each_overlap(const FaceTree& other, double margin, const Visit& visit) const {
+  const Vec3 step = Vec3::Constant(margin);
   if (nodes_.empty() || other.nodes_.empty()) return;
   std::vector<std::array<int, 2>> open{{0, 0}};
   while (!open.empty()) {
     const auto [i, j] = open.back();
     open.pop_back();
     const Node &mine = nodes_[i], &theirs = other.nodes_[j];
-    if (!touch(mine, theirs)) continue;
+    if (!touch(mine, theirs, margin)) continue;
     if (mine.child < 0 && theirs.child < 0) {
       for (int p = mine.begin; p < mine.end; ++p)
         for (int q = theirs.begin; q < theirs.end; ++q)
-          if (box(p).intersects(other.box(q))) visit(order_[p], other.order_[q]);
+          if (Box(box(p).min() - step, box(p).max() + step).intersects(other.box(q))) visit(order_[p], other.order_[q]);
     } else if (theirs.child < 0 ||
                (mine.child >= 0 && (mine.high - mine.low).squaredNorm() > (theirs.high - theirs.low).squaredNorm())) {
       open.push_back({mine.child, j}), open.push_back({mine.child + 1, j});
