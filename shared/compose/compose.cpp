@@ -150,12 +150,13 @@ Assembly by_voxel_cut(cut::Model& a, cut::Model& b, const Box& volume, const Com
 /// What is wrong with a seam, in units of SeamScore::total(): edges of more than two faces and pieces more
 /// than the models', borders that face none and crossing faces at the price that unfaced borders have there.
 double flaws_of(const Assembly& t, const cut::Model& a, const cut::Model& b, double scale) {
-  constexpr double kEach = 10;  // an edge of more than two faces, a piece
+  constexpr double kNonManifold = 1e6;  // an edge of more than two faces: no seam is worth it
+  constexpr double kPiece = 10;
   const double per_length = cut::SeamScore::kReach / cut::SeamScore::kLambda / scale;
   const mesh::MeshCheck made = mesh::check(t.result.composed), of_a = mesh::check(a.prepared.mesh),
                         of_b = mesh::check(b.prepared.mesh);
-  return kEach * std::max(0, made.nonmanifold_edges - of_a.nonmanifold_edges - of_b.nonmanifold_edges) +
-         kEach * std::max(0, made.components - std::max(of_a.components, of_b.components)) + per_length * t.flaws;
+  return kNonManifold * std::max(0, made.nonmanifold_edges - of_a.nonmanifold_edges - of_b.nonmanifold_edges) +
+         kPiece * std::max(0, made.components - std::max(of_a.components, of_b.components)) + per_length * t.flaws;
 }
 
 /// The mesh cut; where its seam has flaws, the thesis' cut if seam and flaws together are better.
