@@ -16,7 +16,7 @@ using End = RegionReport::End;
 
 // Without a database, by how much the scan's mirror image and other places of it may miss what is known, of what a
 // smooth surface does: half of a face vouches for the other half, another place for little.
-constexpr double kMirrorMisses = 1.05, kPlaceMisses = 0.5;
+constexpr double kMirrorMisses = 0.85, kPlaceMisses = 0.5;
 constexpr int kSymmetry = 5;  // per cent of the time, without a database
 
 std::vector<search::Candidate> search_around(const Scan& scan, const Region& region, const io::ModelDatabase& database,
