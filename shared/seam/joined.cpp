@@ -96,7 +96,7 @@ void set_shape(Mesh& m, const Shape& s) { m.vertices = s.vertices, m.faces = s.f
 /// Blends, smooths and untangles. @return pairs of faces at the seam that cross
 /// @param held  per vertex: does not give way
 std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& before, const std::vector<char>& held,
-                                           double distance, const SeamSmoothing& smoothing, int threads) {
+                                           double edge, double distance, const SeamSmoothing& smoothing, int threads) {
   j.blend = {};
   std::vector<char> seam = j.seam;  // where there is something to smooth
   for (char& s : seam)
@@ -110,7 +110,8 @@ std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& b
   for (std::size_t v = 0; v < movable.size(); ++v)
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
   constexpr int kRounds = 15;
-  return untangle(j.mesh, movable, j.seam, before, kRounds, threads);
+  constexpr double kLargestFold = 3;  // edges of the seam
+  return untangle(j.mesh, movable, j.seam, before, kLargestFold * edge, kRounds, threads);
 }
 
 /// Holds the vertices of faces, and those within a distance of them along the surface.
@@ -145,7 +146,7 @@ long finish_seam(Joined& j, double voxel, cut::Cut cut, const SeamSmoothing& smo
     if (attempt == kHolding) less.blend_distance = 0.5 * blend.distance;
     if (attempt > kHolding) less.blend = false;
     set_shape(j.mesh, stitched);
-    const std::vector<std::array<int, 2>> pairs = smooth_all(j, before, held, distance, less, threads);
+    const std::vector<std::array<int, 2>> pairs = smooth_all(j, before, held, voxel, distance, less, threads);
     if (crossings < 0 || long(pairs.size()) < crossings)
       crossings = long(pairs.size()), best = shape_of(j.mesh), blend = j.blend;
     if (j.blend.moved == 0) break;

@@ -69,11 +69,14 @@ class Neighbourhood {
   std::vector<int> faces_;
 };
 
-/// Pairs of faces that lie folded onto each other: what is left of a strip that ran back on itself.
-std::vector<std::array<int, 2>> folded(const Mesh& mesh, const std::vector<std::array<int, 2>>& beside) {
+/// Pairs of faces that lie folded onto each other: what is left of a strip that ran back on itself. Its
+/// faces are small; large ones that meet sharply are meant to.
+std::vector<std::array<int, 2>> folded(const Mesh& mesh, const std::vector<std::array<int, 2>>& beside,
+                                       double largest) {
   constexpr double kFolded = -0.34;  // the cosine between the normals: 110 degrees
   std::vector<std::array<int, 2>> folds;
   for (const auto& [f, g] : beside) {
+    if (std::max(mesh.face_box(f).diagonal().norm(), mesh.face_box(g).diagonal().norm()) > largest) continue;
     const Vec3 a = mesh.area_vector(f), b = mesh.area_vector(g);
     if (a.dot(b) < kFolded * a.norm() * b.norm()) folds.push_back({f, g});
   }
@@ -83,12 +86,12 @@ std::vector<std::array<int, 2>> folded(const Mesh& mesh, const std::vector<std::
 /// What crossed or was folded already, away from the seam: it is the inputs' own. Sorted.
 std::vector<std::array<int, 2>> flaws_before(Mesh& mesh, const std::vector<char>& asked,
                                              const std::vector<std::array<int, 2>>& beside,
-                                             const std::vector<char>& seam, const std::vector<Vec3>& before, long limit,
-                                             int threads) {
+                                             const std::vector<char>& seam, const std::vector<Vec3>& before,
+                                             double largest_fold, long limit, int threads) {
   const std::vector<Vec3> now = mesh.vertices;
   mesh.vertices = before;
   std::vector<std::array<int, 2>> own = Neighbourhood(mesh, asked).crossings(limit, threads);
-  const std::vector<std::array<int, 2>> folds = folded(mesh, beside);
+  const std::vector<std::array<int, 2>> folds = folded(mesh, beside, largest_fold);
   mesh.vertices = now;
   own.insert(own.end(), folds.begin(), folds.end());
   const auto at_seam = [&](const std::array<int, 2>& pair) {
@@ -105,7 +108,8 @@ std::vector<std::array<int, 2>> flaws_before(Mesh& mesh, const std::vector<char>
 }  // namespace
 
 std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& movable, const std::vector<char>& seam,
-                                         const std::vector<Vec3>& before, int rounds, int threads) {
+                                         const std::vector<Vec3>& before, double largest_fold, int rounds,
+                                         int threads) {
   std::vector<char> asked(mesh.faces.size(), 0);
   std::vector<std::vector<int>> around(mesh.vertices.size());
   std::vector<char> free = movable;
@@ -128,7 +132,8 @@ std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& mo
 
   // More pairs than that are no fold at a seam: relaxing a few vertices parts nothing, and takes for ever.
   const long hopeless = 1000 + 4 * std::count(asked.begin(), asked.end(), 1);
-  const std::vector<std::array<int, 2>> own = flaws_before(mesh, asked, beside, seam, before, hopeless, threads);
+  const std::vector<std::array<int, 2>> own =
+      flaws_before(mesh, asked, beside, seam, before, largest_fold, hopeless, threads);
   const auto drop_own = [&own](std::vector<std::array<int, 2>>& pairs) {
     const auto is_own = [&own](const auto& pair) { return std::binary_search(own.begin(), own.end(), pair); };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_own), pairs.end());
@@ -141,7 +146,7 @@ std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& mo
     std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(hopeless + long(own.size()), threads);
     drop_own(pairs);
     const long crossings = std::min(long(pairs.size()), hopeless);
-    const std::vector<std::array<int, 2>> folds = folded(mesh, beside);
+    const std::vector<std::array<int, 2>> folds = folded(mesh, beside, largest_fold);
     const std::pair<long, std::size_t> flaws(crossings, folds.size());
     if (least.first < 0 || flaws < least) least = flaws, best = mesh.vertices, left = pairs;
     pairs.insert(pairs.end(), folds.begin(), folds.end());

@@ -17,8 +17,9 @@ namespace parts::seam {
 /// inputs' own: it stays, and does not count.
 /// @param movable, seam  per vertex
 /// @param before         the vertices before anything moved
+/// @param largest_fold   world units; larger faces that meet sharply are no fold
 /// @return the pairs of crossing faces that are left, of those with a movable vertex
 std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& movable, const std::vector<char>& seam,
-                                         const std::vector<Vec3>& before, int rounds, int threads);
+                                         const std::vector<Vec3>& before, double largest_fold, int rounds, int threads);
 
 }  // namespace parts::seam
