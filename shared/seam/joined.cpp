@@ -111,7 +111,7 @@ std::vector<std::array<int, 2>> smooth_all(Joined& j, const std::vector<Vec3>& b
     movable[v] = !j.fixed[v] && (j.seam[v] || before[v] != j.mesh.vertices[v]);
   constexpr int kRounds = 15;
   constexpr double kLargestFold = 3;  // edges of the seam
-  return untangle(j.mesh, movable, j.seam, before, kLargestFold * edge, kRounds, threads);
+  return untangle(j.mesh, {movable, j.seam, j.tag, before, kLargestFold * edge, kRounds, threads});
 }
 
 /// Holds the vertices of faces, and those within a distance of them along the surface.

@@ -85,36 +85,33 @@ std::vector<std::array<int, 2>> folded(const Mesh& mesh, const std::vector<std::
 
 /// What crossed or was folded already, away from the seam: it is the inputs' own. Sorted.
 std::vector<std::array<int, 2>> flaws_before(Mesh& mesh, const std::vector<char>& asked,
-                                             const std::vector<std::array<int, 2>>& beside,
-                                             const std::vector<char>& seam, const std::vector<Vec3>& before,
-                                             double largest_fold, long limit, int threads) {
+                                             const std::vector<std::array<int, 2>>& beside, const Untangling& given,
+                                             long limit) {
   const std::vector<Vec3> now = mesh.vertices;
-  mesh.vertices = before;
-  std::vector<std::array<int, 2>> own = Neighbourhood(mesh, asked).crossings(limit, threads);
-  const std::vector<std::array<int, 2>> folds = folded(mesh, beside, largest_fold);
+  mesh.vertices = given.before;
+  std::vector<std::array<int, 2>> own = Neighbourhood(mesh, asked).crossings(limit, given.threads);
+  const std::vector<std::array<int, 2>> folds = folded(mesh, beside, given.largest_fold);
   mesh.vertices = now;
   own.insert(own.end(), folds.begin(), folds.end());
-  const auto at_seam = [&](const std::array<int, 2>& pair) {
+  const auto made = [&](const std::array<int, 2>& pair) {
     for (int f : pair)
       for (int v : mesh.faces[f])
-        if (seam[v]) return true;
-    return false;
+        if (given.seam[v]) return true;
+    return given.tag[pair[0]] != given.tag[pair[1]];
   };
-  own.erase(std::remove_if(own.begin(), own.end(), at_seam), own.end());
+  own.erase(std::remove_if(own.begin(), own.end(), made), own.end());
   std::sort(own.begin(), own.end());
   return own;
 }
 
 }  // namespace
 
-std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& movable, const std::vector<char>& seam,
-                                         const std::vector<Vec3>& before, double largest_fold, int rounds,
-                                         int threads) {
+std::vector<std::array<int, 2>> untangle(Mesh& mesh, const Untangling& given) {
   std::vector<char> asked(mesh.faces.size(), 0);
   std::vector<std::vector<int>> around(mesh.vertices.size());
-  std::vector<char> free = movable;
+  std::vector<char> free = given.movable;
   for (int f = 0; f < mesh.face_count(); ++f)
-    for (int v : mesh.faces[f]) asked[f] |= movable[v];
+    for (int v : mesh.faces[f]) asked[f] |= given.movable[v];
   Mesh zone;
   zone.vertices.resize(mesh.vertices.size());
   std::vector<int> whole;  // per face of the zone
@@ -132,8 +129,7 @@ std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& mo
 
   // More pairs than that are no fold at a seam: relaxing a few vertices parts nothing, and takes for ever.
   const long hopeless = 1000 + 4 * std::count(asked.begin(), asked.end(), 1);
-  const std::vector<std::array<int, 2>> own =
-      flaws_before(mesh, asked, beside, seam, before, largest_fold, hopeless, threads);
+  const std::vector<std::array<int, 2>> own = flaws_before(mesh, asked, beside, given, hopeless);
   const auto drop_own = [&own](std::vector<std::array<int, 2>>& pairs) {
     const auto is_own = [&own](const auto& pair) { return std::binary_search(own.begin(), own.end(), pair); };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_own), pairs.end());
@@ -143,14 +139,15 @@ std::vector<std::array<int, 2>> untangle(Mesh& mesh, const std::vector<char>& mo
   std::vector<std::array<int, 2>> left;
   std::pair<long, std::size_t> least(-1, 0);  // crossings, folds
   for (int round = 0;; ++round) {
-    std::vector<std::array<int, 2>> pairs = Neighbourhood(mesh, asked).crossings(hopeless + long(own.size()), threads);
+    std::vector<std::array<int, 2>> pairs =
+        Neighbourhood(mesh, asked).crossings(hopeless + long(own.size()), given.threads);
     drop_own(pairs);
     const long crossings = std::min(long(pairs.size()), hopeless);
-    const std::vector<std::array<int, 2>> folds = folded(mesh, beside, largest_fold);
+    const std::vector<std::array<int, 2>> folds = folded(mesh, beside, given.largest_fold);
     const std::pair<long, std::size_t> flaws(crossings, folds.size());
     if (least.first < 0 || flaws < least) least = flaws, best = mesh.vertices, left = pairs;
     pairs.insert(pairs.end(), folds.begin(), folds.end());
-    if (pairs.empty() || round == rounds || crossings == hopeless) break;
+    if (pairs.empty() || round == given.rounds || crossings == hopeless) break;
     std::vector<char> moving(mesh.vertices.size(), 0);
     for (const auto& pair : pairs)
       for (int f : pair)

@@ -320,6 +320,9 @@ def input_files(case):
         folder = path if path.is_dir() else path.parent
         if path.is_file() and path.suffix not in (".ply", ".mlp", ".obj", ".off", ".stl"):
             found.add(path)
+        elif path.is_file() and path.suffix == ".mlp":  # its images; beside it other cases write
+            found.add(path)
+            found.update(f for f in (folder / f"{path.stem}_mappings").rglob("*") if f.is_file())
         elif folder.is_dir() and str(folder).startswith(str(pathlib.Path.cwd())):
             found.update(f for f in folder.rglob("*") if f.is_file() and ".model-cache" not in f.parts)
     return {f: digest(f) for f in found if f.stat().st_size < 1 << 28}

@@ -25,7 +25,8 @@ Mesh sheet(int n) {
 /// All is seam.
 std::size_t untangled(Mesh& m, const std::vector<char>& movable) {
   const std::vector<Vec3> before = m.vertices;
-  return seam::untangle(m, movable, std::vector<char>(m.vertices.size(), 1), before, 10, 15, 1).size();
+  const std::vector<char> seam(m.vertices.size(), 1), tag(m.faces.size(), 0);
+  return seam::untangle(m, {movable, seam, tag, before, 10}).size();
 }
 
 TEST(Untangle, PartsFacesThatCross) {
@@ -86,7 +87,8 @@ TEST(Untangle, WhatTheInputsHadAwayFromTheSeamIsLeft) {
   m.vertices[8 * 12 + 8] += Vec3(1.7, 0.1, 0);  // made at the seam
   std::vector<char> seam(m.vertices.size(), 0), movable(m.vertices.size(), 1);
   for (int i = 0; i < 12; ++i) seam[8 * 12 + i] = 1;
-  EXPECT_TRUE(seam::untangle(m, movable, seam, before, 10, 15, 1).empty());
+  const std::vector<char> tag(m.faces.size(), 0);
+  EXPECT_TRUE(seam::untangle(m, {movable, seam, tag, before, 10}).empty());
   EXPECT_EQ(m.vertices[2 * 12 + 2], before[2 * 12 + 2]);
   EXPECT_GT(mesh::self_intersections(m), 0);
   EXPECT_NE(m.vertices[8 * 12 + 8], before[8 * 12 + 8] + Vec3(1.7, 0.1, 0));
