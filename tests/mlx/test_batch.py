@@ -87,6 +87,15 @@ class Batch(unittest.TestCase):
         self.assertIn("--out", run.stderr)
         self.assertEqual(self.scans[0].read_bytes(), before)
 
+    def test_neither_are_tables_sheets_and_textures(self):
+        self.out.mkdir()
+        for name in ("batch.csv", "sheet_1.png", "third.png"):
+            (self.out / name).write_text("mine")
+            run, _ = self.batch(self.scans[2])
+            self.assertEqual((run.returncode, (self.out / name).read_text()), (1, "mine"), name)
+            self.assertIn(name, run.stderr)
+            (self.out / name).unlink()
+
     def test_bad_words_are_named(self):
         for words, part in ((["no_such.ply"], "does not exist"), ([self.scans[0], "Blend2=3"], "Blend2")):
             run, _ = self.batch(*words)
